@@ -1,0 +1,1 @@
+"""Records every topic of the contract into an MCAP bag."""

@@ -1,0 +1,21 @@
+from setuptools import find_packages, setup
+
+package_name = 'shared_control'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    install_requires=['panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors', 'matplotlib'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='shared-control maintainers',
+    maintainer_email='maintainers@shared-control.invalid',
+    description='ROS-free library of shared-control training: robot, controller, world, task, people, learning.',
+    license='Apache-2.0',
+    entry_points={'console_scripts': ['shared-control = shared_control.cli:main']},
+)

@@ -1,0 +1,1 @@
+"""From the two moments to joint torques."""

@@ -1,0 +1,1 @@
+"""The Franka Emika Panda: limits, gains and rigid-body model."""

@@ -1,0 +1,25 @@
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = 'shared_control_bringup'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    package_data={'shared_control_bringup': ['config/*']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+        ('share/' + package_name + '/config', glob(package_name + '/config/*')),
+    ],
+    install_requires=['shared_control', 'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node', 'sim_tutor_node', 'session_recorder_node', 'pyyaml'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='shared-control maintainers',
+    maintainer_email='maintainers@shared-control.invalid',
+    description='Starts the whole graph: parameter file, launch files, sessions.',
+    license='Apache-2.0',
+    entry_points={'shared_control.commands': ['session = shared_control_bringup.session:add_command']},
+)

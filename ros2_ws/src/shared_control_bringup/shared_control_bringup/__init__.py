@@ -1,0 +1,1 @@
+"""Starts the whole graph: parameter file, launch files, sessions."""

@@ -1,0 +1,1 @@
+"""What the nodes of the shared-control graph have in common: contract, 1 kHz receive loop, parameters, diagnostics."""

@@ -1,0 +1,65 @@
+"""Once a second: how fast a node runs and what it misses."""
+
+import time
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
+
+from . import contract
+
+
+class Diagnostics:
+    """Collects the periods of a loop and publishes them at 1 Hz on ``/diagnostics``.
+
+    Args:
+        node: the node that publishes.
+        period: the loop's nominal period, s. A period of more than 1.5 times that is an overrun.
+    """
+
+    _CAPACITY = 4096
+
+    def __init__(self, node: Node, period: float):
+        self._node = node
+        self._nominal = period
+        self._publisher = node.create_publisher(
+            contract.DIAGNOSTICS.msg_type, contract.DIAGNOSTICS.name, contract.DIAGNOSTICS.qos)
+        self._periods = np.empty(self._CAPACITY)
+        self._count = 0
+        self._last: float | None = None
+        self._next_report = time.monotonic() + 1.0
+        self.overruns = 0
+
+    def tick(self) -> None:
+        """Call once a period."""
+        now = time.monotonic()
+        if self._last is not None:
+            elapsed = now - self._last
+            self._periods[self._count % self._CAPACITY] = elapsed
+            self._count += 1
+            if elapsed > 1.5 * self._nominal:
+                self.overruns += 1
+        self._last = now
+
+    def skip(self) -> None:
+        """The loop stood still on purpose (a pause): do not count the time since the last tick."""
+        self._last = None
+
+    def due(self) -> bool:
+        """Whether a second has passed since the last report."""
+        return time.monotonic() >= self._next_report
+
+    def publish(self, problems: dict[str, str], **values: object) -> None:
+        """Publish the statistics, ``values``, and ``problems`` (topic -> what is wrong with it)."""
+        self._next_report = time.monotonic() + 1.0
+        periods = self._periods[:min(self._count, self._CAPACITY)] * 1e3
+        self._count = 0
+        p50, p99 = np.percentile(periods, [50, 99]) if periods.size else (float('nan'), float('nan'))
+        status = DiagnosticStatus(name=self._node.get_fully_qualified_name(), hardware_id='')
+        status.level = DiagnosticStatus.WARN if problems else DiagnosticStatus.OK
+        status.message = '; '.join(f'{topic}: {what}' for topic, what in problems.items()) or 'ok'
+        shown = {'period_p50_ms': f'{p50:.3f}', 'period_p99_ms': f'{p99:.3f}', 'overruns': self.overruns, **values}
+        status.values = [KeyValue(key=key, value=str(value)) for key, value in shown.items()]
+        message = DiagnosticArray(status=[status])
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._publisher.publish(message)

@@ -1,0 +1,43 @@
+"""Parameters with a description, a unit and a range."""
+
+from typing import Any
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException, ParameterException
+from rclpy.node import Node
+
+
+class ParameterError(ValueError):
+    """A parameter has a value that the node cannot run with; the message names both."""
+
+
+def declare(node: Node, name: str, default: Any, description: str, *, unit: str = '',
+            minimum: float | None = None, maximum: float | None = None,
+            choices: tuple[str, ...] = (), read_only: bool = True) -> Any:
+    """Declare one parameter and give its value.
+
+    A range is enforced by rclpy when both ends are given. ``choices`` lists the valid strings.
+
+    Raises:
+        ParameterError: the given value has the wrong type, is out of range or is no valid choice.
+    """
+    text = description + (f' [{unit}]' if unit else '') + (f' One of: {", ".join(choices)}.' if choices else '')
+    descriptor = ParameterDescriptor(description=text, read_only=read_only)
+    if minimum is not None and maximum is not None:
+        if isinstance(default, float):
+            descriptor.floating_point_range = [FloatingPointRange(from_value=minimum, to_value=maximum)]
+        else:
+            descriptor.integer_range = [IntegerRange(from_value=int(minimum), to_value=int(maximum))]
+    try:
+        value = node.declare_parameter(name, default, descriptor).value
+    except InvalidParameterTypeException as error:
+        raise ParameterError(
+            f'parameter {name!r} must be of type {type(default).__name__}: {error}. {text}') from error
+    except (InvalidParameterValueException, ParameterException) as error:
+        span = f'{minimum} to {maximum}' if minimum is not None else 'see description'
+        raise ParameterError(f'parameter {name!r} is out of range ({span}): {error}. {text}') from error
+    if choices:
+        wrong = [v for v in (value if isinstance(value, list) else [value]) if v not in choices]
+        if wrong:
+            raise ParameterError(f'parameter {name!r} has no choice {wrong[0]!r}. {text}')
+    return value

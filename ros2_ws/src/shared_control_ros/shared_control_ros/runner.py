@@ -1,0 +1,68 @@
+"""Start and stop of a node, the same for all of them."""
+
+import signal
+import sys
+from collections.abc import Callable
+from typing import Protocol
+
+import rclpy
+from rclpy.exceptions import ROSInterruptException
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from .parameters import ParameterError
+
+
+class Stop:
+    """Set by SIGINT and SIGTERM. A node looks at it in its loop, so that it can still publish when it leaves."""
+
+    def __init__(self) -> None:
+        self.requested = False
+
+    def __call__(self, *_: object) -> None:
+        self.requested = True
+
+
+class Runnable(Protocol):
+    """What :func:`run` runs."""
+
+    node: Node
+
+    def run(self, stop: Stop) -> None:
+        """Work until ``stop.requested``."""
+
+    def close(self) -> None:
+        """Leave a safe state behind: publish zero, flush files."""
+
+
+def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
+    """Initialise rclpy, build the node, run it until it ends or a signal comes, close it.
+
+    Returns:
+        The exit code: 0, or 2 when a parameter or a file is unusable (said in one line on stderr).
+    """
+    if args is None:
+        args = sys.argv
+    if '--help' in args or '-h' in args:
+        print((sys.modules[make.__module__].__doc__ or '').strip())
+        print('\nParameters: --ros-args -p NAME:=VALUE or --ros-args --params-file FILE; the README lists them.')
+        return 0
+    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    stop = Stop()
+    signal.signal(signal.SIGINT, stop)
+    signal.signal(signal.SIGTERM, stop)
+    runnable: Runnable | None = None
+    try:
+        runnable = make()
+        runnable.run(stop)
+        return 0
+    except (ParameterError, OSError) as error:
+        print(f'error: {error}', file=sys.stderr)
+        return 2
+    except ROSInterruptException:
+        return 0
+    finally:
+        if runnable is not None:
+            runnable.close()
+            runnable.node.destroy_node()
+        rclpy.try_shutdown()

@@ -1,0 +1,1 @@
+"""Simulated tutor: watches the ball and presses keys, as a person would."""
