@@ -41,6 +41,7 @@ class Polled:
 
     def __init__(self, node: Node, topic: Topic, depth: int = 1, raw: bool = False,
                  qos_profile: QoSProfile | None = None):
+        self._node = node
         self._type = topic.msg_type
         self._raw = raw
         self._subscription = node.create_subscription(
@@ -54,6 +55,10 @@ class Polled:
         """The name after namespace and remapping."""
         return self._subscription.topic_name
 
+    def publisher_count(self) -> int:
+        """How many publishers the topic has."""
+        return self._node.count_publishers(self.topic_name)
+
     def take(self) -> Any:
         """The next waiting message, or None."""
         taken = self._handle.take_message(self._type, self._raw)
@@ -63,11 +68,15 @@ class Polled:
         """The next waiting message and its ``source_timestamp`` and ``received_timestamp`` in ns, or None."""
         return self._handle.take_message(self._type, self._raw)
 
-    def wait(self, timeout: float) -> Any:
-        """The next message, waiting ``timeout`` seconds for it at the most; None when none came."""
+    def wait_ready(self, timeout: float) -> None:
+        """Return when a message waits, or after ``timeout`` seconds."""
         self._wait_set.clear_entities()
         self._wait_set.add_subscription(self._handle)
         self._wait_set.wait(int(timeout * 1e9))
+
+    def wait(self, timeout: float) -> Any:
+        """The next message, waiting ``timeout`` seconds for it at the most; None when none came."""
+        self.wait_ready(timeout)
         return self.take()
 
 

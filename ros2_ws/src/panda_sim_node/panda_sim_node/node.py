@@ -1,0 +1,244 @@
+"""PyBullet simulator of a Panda with a tray and a ball: a robot on topics.
+
+Publishes /joint_states (1 kHz), /ball and /clock (100 Hz), takes joint torques on /effort_controller/commands and
+pushes at the tray on /disturbance. Services: ~/reset (Trigger), ~/pause (SetBool).
+"""
+
+import math
+import time
+
+import numpy as np
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.robot.limits import DOF
+from shared_control.task.balance import BallStarts
+from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
+from shared_control_ros import contract
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.parameters import declare
+from shared_control_ros.runner import Stop, run
+from std_srvs.srv import SetBool, Trigger
+
+from .state_publisher import StatePublisher
+from .tick_times import TickTimes
+
+PERIOD_NS = round(CONTROL_PERIOD * 1e9)
+REPEAT_AFTER = 0.1
+"""A tick that nobody answers is published again after this, s."""
+LAG_GIVEN_UP = 0.05
+"""A paced run that is this far behind the wall clock no longer tries to catch up, s."""
+
+
+class PandaSimNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('panda_sim_node')
+        mode = declare(
+            node, 'mode', 'lockstep', 'lockstep: a tick waits for its torque. free_running: a tick a millisecond, '
+            'whatever arrives, as a robot does.', choices=('lockstep', 'free_running'))
+        self._paced = declare(node, 'paced', True, 'Keep lockstep to real time; false: as fast as it goes.')
+        seed = declare(
+            node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
+            minimum=0, maximum=2**31 - 1, read_only=False)
+        timeout = declare(
+            node, 'command_timeout', 0.1, 'free_running: without a torque for this long the joints brake.',
+            unit='s', minimum=0.002, maximum=10.0)
+        ball = Ball(
+            mass=declare(node, 'ball_mass', Ball.mass, 'Mass of the ball.', unit='kg', minimum=0.001, maximum=5.0),
+            radius=declare(
+                node, 'ball_radius', Ball.radius, 'Radius of the ball.', unit='m', minimum=0.005, maximum=0.05))
+
+        self._advance = self._advance_lockstep if mode == 'lockstep' else self._advance_free
+        self._world = BallOnTrayWorld(ball, CONTROL_PERIOD)
+        self._starts = BallStarts(seed)
+        self._world.reset(self._starts.next())
+        self._states = StatePublisher(node, self._world)
+        self._commands = Polled(node, contract.EFFORT_COMMANDS)
+        self._disturbances = Polled(node, contract.DISTURBANCE)
+        self._push_until = 0
+        node.create_service(Trigger, '~/reset', self._on_reset)
+        node.create_service(SetBool, '~/pause', self._on_pause)
+        node.add_on_set_parameters_callback(self._on_parameters)
+        self._background = Background(node)
+        self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+
+        self._tick = 0
+        # Simulation time starts at the time of the day, at a multiple of the policy period.
+        policy_period_ns = TICKS_PER_ACTION * PERIOD_NS
+        self._start_ns = time.time_ns() // policy_period_ns * policy_period_ns
+        self._paused = False
+        self._deadline = time.monotonic()
+        self._times = TickTimes()
+        self._running_seconds = 0.0
+        self._missed = 0
+        self._timeout_ticks = round(timeout / CONTROL_PERIOD)
+        self._command: np.ndarray | None = None
+        self._command_age = 0
+
+    def run(self, stop: Stop) -> None:
+        """Tick until told to stop."""
+        began = time.monotonic()
+        while not stop.requested:
+            if self._tick % TICKS_PER_ACTION == 0:
+                self._between_actions()
+            if self._paused:
+                self._background.spin_once(0.02)
+                self._diagnostics.skip()
+                began = self._deadline = time.monotonic()
+            else:
+                self._advance(stop)
+                now = time.monotonic()
+                self._running_seconds += now - began
+                began = now
+            if self._diagnostics.due():
+                self._report()
+
+    def _between_actions(self) -> None:
+        """Requests and disturbances are looked at only here, so that episodes start at policy ticks."""
+        self._background.poll()
+        self._take_disturbance()
+
+    def _publish(self) -> None:
+        self._states.publish(self._tick, self._start_ns + self._tick * PERIOD_NS)
+
+    # -- lockstep --------------------------------------------------------------------------------------------------
+
+    def _advance_lockstep(self, stop: Stop) -> None:
+        if self._paced:
+            self._pace()
+        started = time.perf_counter()
+        self._publish()
+        torque = self._await_torque(stop)
+        if torque is None:
+            return
+        self._world.step(torque)
+        self._times.add(time.perf_counter() - started)
+        self._diagnostics.tick()
+        self._tick += 1
+
+    def _await_torque(self, stop: Stop) -> np.ndarray | None:
+        """The torque for this tick; None when the node is to stop."""
+        waited = 0.0
+        while not stop.requested:
+            message = self._commands.wait(REPEAT_AFTER)
+            torque = None if message is None else self._read(message)
+            if torque is not None:
+                return torque
+            if message is None:
+                waited += REPEAT_AFTER
+                self._publish()
+                if waited >= 1.0:
+                    self.node.get_logger().warning(
+                        f'no torque on {self._commands.topic_name} for {waited:.1f} s: the simulation stands '
+                        'still until torque_ctrl_node answers', throttle_duration_sec=5.0)
+        return None
+
+    def _pace(self) -> None:
+        self._deadline += CONTROL_PERIOD
+        lag = time.monotonic() - self._deadline
+        if lag < 0:
+            time.sleep(-lag)
+        elif lag > LAG_GIVEN_UP:
+            self._deadline += lag
+
+    # -- free running ----------------------------------------------------------------------------------------------
+
+    def _advance_free(self, stop: Stop) -> None:
+        self._pace()
+        started = time.perf_counter()
+        message = self._commands.take()
+        torque = None if message is None else self._read(message)
+        if torque is None:
+            self._missed += 1
+            self._command_age += 1
+        else:
+            self._command = torque
+            self._command_age = 0
+        if self._command is None or self._command_age > self._timeout_ticks:
+            self._world.step_braked()
+        else:
+            self._world.step(self._command)
+        self._tick += 1
+        self._publish()
+        self._times.add(time.perf_counter() - started)
+        self._diagnostics.tick()
+
+    # -- input -----------------------------------------------------------------------------------------------------
+
+    def _read(self, message: contract.Float64MultiArray) -> np.ndarray | None:
+        """Torques of a command, (7,), N m; None when it is unusable."""
+        torque = np.array(message.data)
+        if torque.shape == (DOF,) and math.isfinite(torque.sum()):
+            return torque
+        self.node.get_logger().error(
+            f'dropped a message on {self._commands.topic_name}: expected {DOF} finite torques, got '
+            f'{list(message.data)[:10]}', throttle_duration_sec=1.0)
+        return None
+
+    def _take_disturbance(self) -> None:
+        message = self._disturbances.take()
+        if message is None:
+            if self._push_until and self._tick >= self._push_until:
+                self._world.push(np.zeros(3))
+                self._push_until = 0
+            return
+        force = np.array([message.wrench.force.x, message.wrench.force.y, message.wrench.force.z])
+        if message.header.frame_id != contract.BASE_FRAME or not math.isfinite(force.sum()):
+            self.node.get_logger().error(
+                f'dropped a message on {self._disturbances.topic_name}: frame_id {message.header.frame_id!r} (expected '
+                f'{contract.BASE_FRAME!r}), force {force}', throttle_duration_sec=1.0)
+            return
+        self._world.push(force)
+        self._push_until = self._tick + self._timeout_ticks
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        ball_x = self._starts.next()
+        self._world.reset(ball_x)
+        self._command = None
+        response.success = True
+        response.message = f'ball dropped at x = {ball_x:.4f} m'
+        return response
+
+    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._paused = request.data
+        response.success = True
+        response.message = 'paused' if self._paused else 'running'
+        return response
+
+    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name == 'seed':
+                self._starts.seed(parameter.value)
+        return SetParametersResult(successful=True)
+
+    # -- output ----------------------------------------------------------------------------------------------------
+
+    def _report(self) -> None:
+        simulated = self._tick * CONTROL_PERIOD
+        problems = {}
+        if self._commands.publisher_count() == 0:
+            problems[self._commands.topic_name] = 'no publisher'
+        self._diagnostics.publish(
+            problems, ticks=self._tick, tick_p50_ms=f'{self._times.quantile_ms(0.5):.2f}',
+            tick_p99_ms=f'{self._times.quantile_ms(0.99):.2f}', late_ticks=self._times.late,
+            running_seconds=f'{self._running_seconds:.3f}', simulated_seconds=f'{simulated:.3f}',
+            missed_commands=self._missed, paused=self._paused)
+
+    def close(self) -> None:
+        """Publish the figures of the whole run and free the physics server."""
+        self._report()
+        self._background.close()
+        self._world.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(PandaSimNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

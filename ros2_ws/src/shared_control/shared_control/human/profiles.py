@@ -1,0 +1,54 @@
+"""Kinds of simulated tutors, by name."""
+
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class TutorProfile:
+    """How a simulated tutor perceives, decides and presses.
+
+    The defaults are the expert's.
+    """
+
+    reaction_time: float = 0.25
+    """From the world to the picture that a decision rests on, s. Visual reaction times of practised people."""
+    key_rate: float = 5.0
+    """Most key presses a second, 1/s."""
+    position_noise: float = 0.004
+    """Standard deviation of the position as seen, m."""
+    velocity_noise: float = 0.015
+    """m/s"""
+    pitch_noise: float = 0.004
+    """rad"""
+    stiffness: float = 0.6
+    """Tilt wanted for each metre that the ball is off the centre, rad/m."""
+    damping: float = 0.45
+    """Tilt wanted against each m/s of the ball, rad s/m."""
+    tolerance: float = 1.5
+    """What the robot may lack before the tutor helps, N m."""
+    watches: bool = True
+    """False: presses keys that have nothing to do with the ball."""
+
+
+EXPERT = TutorProfile()
+
+PROFILES: dict[str, TutorProfile] = {
+    'expert': EXPERT,
+    'high': replace(
+        EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.03, pitch_noise=0.008),
+    'low': replace(
+        EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.045, pitch_noise=0.012),
+    'sham': replace(EXPERT, watches=False),
+}
+"""``expert``, ``high`` and ``low`` performer (4.4, 4.5), and ``sham``, whose keys are unrelated to the ball."""
+
+
+def profile(name: str) -> TutorProfile:
+    """The profile called ``name``.
+
+    Raises:
+        ValueError: there is none; the message lists the names.
+    """
+    if name not in PROFILES:
+        raise ValueError(f'no tutor profile {name!r}; there are {", ".join(PROFILES)}')
+    return PROFILES[name]

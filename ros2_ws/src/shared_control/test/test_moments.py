@@ -1,0 +1,24 @@
+"""What becomes of the moments before they reach the arm."""
+
+import pytest
+from shared_control.control.moments import FADE_TIME, MomentSource, freshness, sum_moments
+
+
+def test_a_command_counts_until_its_timeout_and_then_fades():
+    assert freshness(0.0, 0.1) == freshness(0.1, 0.1) == 1.0
+    assert freshness(0.1 + FADE_TIME / 2, 0.1) == pytest.approx(0.5)
+    assert freshness(0.1 + FADE_TIME, 0.1) == freshness(100.0, 0.1) == 0.0
+
+
+def test_a_silent_source_ends_at_zero():
+    source = MomentSource(m_y=5.0, stamp_ns=1_000_000_000)
+    assert source.at(1_050_000_000, 0.1) == 5.0
+    assert 0.0 < source.at(1_150_000_000, 0.1) < 5.0
+    assert source.at(2_000_000_000, 0.1) == 0.0
+    assert source.is_stale(1_150_000_000, 0.1) and not source.is_stale(1_050_000_000, 0.1)
+
+
+def test_the_sum_is_limited():
+    assert sum_moments(3.0, 5.0, 20.0) == 8.0
+    assert sum_moments(30.0, 5.0, 20.0) == 20.0
+    assert sum_moments(-30.0, 5.0, 20.0) == -20.0

@@ -1,0 +1,153 @@
+"""1 kHz computed-torque controller: answers every /joint_states with joint torques.
+
+Sums the moments of human and agent, turns them into a wrench at the tray, and publishes
+``tau_pd + J^T W_tr + tau_g`` on /effort_controller/commands and the applied moment on /target_wrench.
+"""
+
+import numpy as np
+from geometry_msgs.msg import WrenchStamped
+from rclpy.node import Node
+from shared_control.control.computed_torque import ComputedTorqueController
+from shared_control.control.moments import sum_moments
+from shared_control.envs.plant import CONTROL_PERIOD, POLICY_PERIOD
+from shared_control.robot.limits import DOF
+from shared_control.robot.model import PandaModel
+from shared_control.robot.posture import GAINS
+from shared_control_ros import contract
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.parameters import declare
+from shared_control_ros.runner import Stop, run
+from shared_control_ros.stamps import to_ns
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool
+
+from .joint_states import JointStateReader
+from .wrench_input import WrenchInput
+
+TICKS_PER_POLL = 10
+"""How often services are looked at and an unchanged moment is published again."""
+
+
+class TorqueCtrlNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('torque_ctrl_node')
+        gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(GAINS))
+        self._timeout = declare(
+            node, 'command_timeout', 0.1, 'A wrench older than this counts as zero.', unit='s',
+            minimum=0.02, maximum=1.0)
+        self._moment_limit = declare(
+            node, 'moment_limit', 20.0, 'Bound of |M_yai + M_yh|.', unit='N m', minimum=0.0, maximum=200.0)
+        compensates = declare(
+            node, 'robot_compensates_gravity', False, 'The robot adds gravity itself: leave it out of the command.')
+        wait_for = declare(
+            node, 'wait_for', ['none'], 'Sources to wait for at every policy tick, for results that do not depend '
+            'on timing.', choices=('none', 'human', 'agent'))
+        self._enabled = declare(node, 'enabled', True, 'Send torques from the start.')
+
+        self._controller = ComputedTorqueController(
+            PandaModel(), GAINS[gains], CONTROL_PERIOD, robot_compensates_gravity=compensates)
+        self._reader = JointStateReader()
+        self._joint_states = Polled(node, contract.JOINT_STATES)
+        self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)
+        self._agent = WrenchInput(node, contract.AGENT_WRENCH, self._timeout)
+        sources = {'human': self._human, 'agent': self._agent}
+        self._awaited = [source for name, source in sources.items() if name in wait_for]
+        self._policy_period_ns = round(POLICY_PERIOD * 1e9)
+
+        self._command = Float64MultiArray(data=np.zeros(DOF).tolist())
+        self._torque = np.frombuffer(self._command.data)
+        self._applied = WrenchStamped()
+        self._applied.header.frame_id = contract.BASE_FRAME
+        self._command_publisher = node.create_publisher(
+            contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
+        self._applied_publisher = node.create_publisher(
+            contract.APPLIED_WRENCH.msg_type, contract.APPLIED_WRENCH.name, contract.APPLIED_WRENCH.qos)
+        node.create_service(SetBool, '~/enable', self._on_enable)
+
+        self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+        self._background = Background(node)
+        self._answered_ns = 0
+        self._repetitions = 0
+        self._ticks = 0
+
+    def run(self, stop: Stop) -> None:
+        """Answer joint states until told to stop."""
+        while not stop.requested:
+            message = self._joint_states.wait(0.1)
+            if message is None:
+                self._background.poll()
+                self._diagnostics.skip()
+            elif self._enabled and not self._is_leftover(to_ns(message.header.stamp)):
+                self._answer(message, stop)
+            self._ticks += 1
+            if self._ticks % TICKS_PER_POLL == 0:
+                self._background.poll()
+            if self._diagnostics.due():
+                self._report()
+
+    def _is_leftover(self, stamp_ns: int) -> bool:
+        """Whether this tick was answered and is only its first repetition (docs/architecture.md, "The tick")."""
+        self._repetitions = self._repetitions + 1 if stamp_ns == self._answered_ns else 0
+        return self._repetitions == 1
+
+    def _answer(self, message: contract.JointState, stop: Stop) -> None:
+        now_ns = to_ns(message.header.stamp)
+        try:
+            q, qd, effort = self._reader.read(message)
+        except ValueError as error:
+            self.node.get_logger().error(
+                f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
+            return
+        if self._awaited and now_ns % self._policy_period_ns == 0:
+            self._wait_for_sources(now_ns, stop)
+        self._human.update(now_ns)
+        self._agent.update(now_ns)
+        m_y = sum_moments(self._agent.moment(now_ns), self._human.moment(now_ns), self._moment_limit)
+        self._torque[:] = self._controller.torque(q, qd, effort, m_y)
+        self._command_publisher.publish(self._command)
+        self._answered_ns = now_ns
+        self._diagnostics.tick()
+        applied = self._applied
+        if m_y != applied.wrench.torque.y or self._ticks % TICKS_PER_POLL == 0:
+            applied.header.stamp = message.header.stamp
+            applied.wrench.torque.y = m_y
+            self._applied_publisher.publish(applied)
+
+    def _wait_for_sources(self, now_ns: int, stop: Stop) -> None:
+        for source in self._awaited:
+            while not source.wait_for_stamp(now_ns, 1.0) and not stop.requested:
+                self.node.get_logger().warning(f'waiting for {source.topic_name} (parameter wait_for)')
+                self._background.poll()
+
+    def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._enabled = request.data
+        response.success = True
+        response.message = 'enabled' if self._enabled else 'disabled: no torques are sent'
+        self.node.get_logger().info(response.message)
+        return response
+
+    def _report(self) -> None:
+        now_ns = self._answered_ns
+        problems = {}
+        for source in (self._human, self._agent):
+            if problem := source.problem(now_ns):
+                problems[source.topic_name] = problem
+        if not self._enabled:
+            problems[self._command_publisher.topic_name] = 'disabled'
+        self._diagnostics.publish(problems, m_y=self._applied.wrench.torque.y)
+
+    def close(self) -> None:
+        """Nothing to undo: the robot stops applying what it no longer receives."""
+        self._background.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(TorqueCtrlNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())
