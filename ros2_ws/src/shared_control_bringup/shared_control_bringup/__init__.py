@@ -1,1 +1,1 @@
-"""Starts the whole graph: parameter file, launch files, sessions."""
+"""Starts the whole graph and keeps what a session leaves behind."""

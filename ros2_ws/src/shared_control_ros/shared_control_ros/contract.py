@@ -47,7 +47,9 @@ APPLIED_WRENCH = Topic('target_wrench', WrenchStamped, qos(1000))
 BALL = Topic('ball', Odometry, qos(100))
 DISTURBANCE = Topic('disturbance', WrenchStamped, qos(10))
 DIAGNOSTICS = Topic('diagnostics', DiagnosticArray, qos(10))
-CLOCK = Topic('clock', Clock, qos(100))
+CLOCK = Topic('/clock', Clock, qos(100))
+"""Absolute: rclpy looks for it there, whatever the namespace."""
+
 
 EPISODE = Topic('training/episode', Int32, qos_latched())
 PHASE = Topic('training/phase', String, qos_latched())
@@ -64,3 +66,4 @@ TOPICS = (
 RESET_SERVICE = 'panda_sim_node/reset'
 PAUSE_SERVICE = 'panda_sim_node/pause'
 ENABLE_SERVICE = 'torque_ctrl_node/enable'
+FINISH_SERVICE = 'ppo_agent_node/finish'

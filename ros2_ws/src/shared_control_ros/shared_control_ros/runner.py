@@ -14,7 +14,7 @@ from .parameters import ParameterError
 
 
 class Stop:
-    """Set by SIGINT and SIGTERM. A node looks at it in its loop, so that it can still publish when it leaves."""
+    """Set by SIGINT, SIGTERM and SIGHUP. A node looks at it in its loop, so that it can still publish when it leaves."""
 
     def __init__(self) -> None:
         self.requested = False
@@ -49,11 +49,13 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
         return 0
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     stop = Stop()
-    signal.signal(signal.SIGINT, stop)
-    signal.signal(signal.SIGTERM, stop)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:  # nohup
+            signal.signal(number, stop)
     runnable: Runnable | None = None
     try:
         runnable = make()
+        runnable.node.get_logger().info('ready')
         runnable.run(stop)
         return 0
     except (ParameterError, OSError) as error:

@@ -42,13 +42,16 @@ class TorqueCtrlNode:
             node, 'moment_limit', 20.0, 'Bound of |M_yai + M_yh|.', unit='N m', minimum=0.0, maximum=200.0)
         compensates = declare(
             node, 'robot_compensates_gravity', False, 'The robot adds gravity itself: leave it out of the command.')
+        horizon = declare(
+            node, 'prediction_horizon', CONTROL_PERIOD, 'Of the implicit PD: one tick in lockstep; 0.004 for a robot '
+            'that runs freely and gets its torques some ticks late.', unit='s', minimum=0.001, maximum=0.02)
         wait_for = declare(
             node, 'wait_for', ['none'], 'Sources to wait for at every policy tick, for results that do not depend '
             'on timing.', choices=('none', 'human', 'agent'))
         self._enabled = declare(node, 'enabled', True, 'Send torques from the start.')
 
         self._controller = ComputedTorqueController(
-            PandaModel(), GAINS[gains], CONTROL_PERIOD, robot_compensates_gravity=compensates)
+            PandaModel(), GAINS[gains], CONTROL_PERIOD, horizon, robot_compensates_gravity=compensates)
         self._reader = JointStateReader()
         self._joint_states = Polled(node, contract.JOINT_STATES)
         self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)

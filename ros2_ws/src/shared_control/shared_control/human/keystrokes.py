@@ -57,10 +57,12 @@ class KeyPresses:
         """The keys that went down since the last state.
 
         Raises:
-            ValueError: fewer than three buttons.
+            ValueError: fewer than three buttons, or a button that is neither 0 nor 1.
         """
         if len(buttons) < len(Key):
             raise ValueError(f'expected {len(Key)} buttons (left, right, space), got {len(buttons)}')
+        if any(buttons[key] not in (0, 1) for key in Key):
+            raise ValueError(f'expected buttons of 0 or 1 (left, right, space), got {list(buttons[:len(Key)])}')
         pressed = [key for key in Key if buttons[key] and not self._down[key]]
         self._down = [bool(buttons[key]) for key in Key]
         return pressed

@@ -94,18 +94,28 @@ class SimulatedTutor:
             m_y_human: M_yh as the keys leave it now, N m.
         """
         self._memory.append(_Memory(seconds, picture, m_y_human))
-        now = seconds + 1e-6  # of rounding
-        while len(self._memory) > 1 and self._memory[1].seconds <= now - self.profile.reaction_time:
-            self._memory.popleft()
-        if now < self._may_press_at or self._memory[0].seconds > now - self.profile.reaction_time:
+        seen = self._seen(seconds)
+        if seen is None or seconds < self._may_press_at:
             return None
         if self.profile.watches:
-            key = self._towards(self._wanted(self._memory[0], m_y_human), m_y_human)
+            key = self._towards(self._wanted(seen, m_y_human), m_y_human)
         else:
             key = self._random.choice([None, *Key])
         if key is not None:
             self._may_press_at = seconds + 1.0 / self.profile.key_rate
         return key
+
+    def _seen(self, seconds: float) -> _Memory | None:
+        """What ``GLANCE`` seconds of looking, a reaction time ago, leave in the mind; None when it is too early."""
+        latest = seconds - self.profile.reaction_time + 1e-6
+        while self._memory[0].seconds < latest - GLANCE:
+            self._memory.popleft()
+        glance = [memory for memory in self._memory if memory.seconds <= latest]
+        if not glance:
+            return None
+        mean = np.mean([(m.seconds, m.picture.position_error, m.picture.velocity, m.picture.pitch, m.m_y_human)
+                        for m in glance], axis=0)
+        return _Memory(mean[0], Picture(*mean[1:4]), mean[4])
 
     def _wanted(self, seen: _Memory, m_y_human: float) -> float:
         """M_yh that would make up for what the robot lacks, in whole keystrokes, N m."""

@@ -1,0 +1,155 @@
+"""The running simulator, with the real controller or with a test that answers its ticks."""
+
+import signal
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import WrenchStamped
+from rcl_interfaces.srv import SetParameters
+from rclpy.parameter import Parameter
+from shared_control.task.balance import BallStarts
+from shared_control_ros import contract
+from shared_control_ros.stamps import to_ns
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool, Trigger
+
+
+def stamps_ms(messages):
+    return np.array([to_ns(m.header.stamp) for m in messages]) // 1_000_000
+
+
+def pause(observer, paused):
+    assert observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=paused)).success
+
+
+@pytest.fixture(scope='class')
+def states(start_node, observer):
+    states = observer.listen(contract.JOINT_STATES, depth=10_000)
+    start_node('panda_sim_node', paced=False, seed=7)
+    start_node('torque_ctrl_node')
+    observer.spin(lambda: len(states) > 500, what='the loop runs')
+    return states
+
+
+class TestLockstepWithController:
+    """Unpaced lockstep with torque_ctrl_node."""
+
+    def test_every_tick_has_the_next_stamp(self, observer, states):
+        balls, clocks = observer.listen(contract.BALL), observer.listen(contract.CLOCK)
+        observer.spin(lambda: len(balls) > 20 and len(clocks) > 20)
+        # A tick that nobody answered while discovery went on stands there twice.
+        steps = np.diff(stamps_ms(states))
+        assert set(steps) <= {0, 1} and (steps[100:] == 1).all()
+        assert set(np.diff(stamps_ms(balls))) == {10}
+        assert balls[0].header.frame_id == contract.BASE_FRAME
+
+    def test_pause_stops_time_at_a_policy_tick_and_reset_starts_there(self, observer, states):
+        balls = observer.listen(contract.BALL)
+        pause(observer, True)
+        observer.spin_for(0.3)
+        count = len(states)
+        observer.spin_for(0.3)
+        assert len(states) == count
+        assert (stamps_ms(states)[-1] + 1) % 20 == 0
+        request = Parameter('seed', value=7).to_parameter_msg()
+        result = observer.call(
+            SetParameters, '/panda_sim_node/set_parameters', SetParameters.Request(parameters=[request]))
+        assert result.results[0].successful
+        assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success
+        balls.clear()
+        pause(observer, False)
+        observer.spin(lambda: balls)
+        assert balls[0].pose.pose.position.x == BallStarts(7).next()
+        assert balls[0].pose.pose.position.z == 0.94
+        assert stamps_ms(balls)[0] % 20 == 0
+        observer.spin(lambda: len(states) > count + 50)
+        assert (np.diff(stamps_ms(states[count - 10:])) == 1).all()
+
+    def test_a_push_tilts_the_tray_while_it_lasts(self, observer, states):
+        assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success
+        publisher = observer.publisher(contract.DISTURBANCE)
+        push = WrenchStamped()
+        push.header.frame_id = contract.BASE_FRAME
+        push.wrench.force.z = -50.0
+        still = np.array(states[-1].position)
+
+        def moved():
+            publisher.publish(push)
+            return np.abs(np.array(states[-1].position) - still).max() > 0.01
+
+        observer.spin(moved)
+        for _ in range(50):
+            observer.spin_for(0.05)
+            if np.abs(np.array(states[-1].position) - still).max() < 0.005:
+                return
+        pytest.fail('the push did not end')
+
+    def test_reports_its_pace(self, observer, states):
+        reports = observer.listen(contract.DIAGNOSTICS)
+        observer.spin(lambda: any(r.status[0].name == '/panda_sim_node' for r in reports))
+        report = next(r for r in reports if r.status[0].name == '/panda_sim_node')
+        values = {v.key: v.value for v in report.status[0].values}
+        assert int(values['ticks']) > 500 and float(values['tick_p99_ms']) >= float(values['tick_p50_ms']) > 0
+
+
+class TestLockstepAnsweredByHand:
+    """The test itself is the controller."""
+
+    def test_waits_repeats_and_refuses_bad_torques(self, start_node, observer):
+        states = observer.listen(contract.JOINT_STATES)
+        commands = observer.publisher(contract.EFFORT_COMMANDS)
+        node = start_node('panda_sim_node', paced=False)
+        observer.spin(lambda: len(states) >= 3, what='the first tick, again and again')
+        assert len(set(stamps_ms(states))) == 1
+        observer.spin(lambda: commands.get_subscription_count() == 1)
+        bad = ([0.0] * 6, [0.0] * 6 + [float('nan')])
+        for data in bad:
+            commands.publish(Float64MultiArray(data=data))
+            observer.spin_for(1.1)
+        assert node.log().count('dropped a message on /effort_controller/commands') == 2
+        assert len(set(stamps_ms(states))) == 1
+        before = stamps_ms(states)[0]
+        commands.publish(Float64MultiArray(data=[1e9] * 7))
+        observer.spin(lambda: stamps_ms(states)[-1] == before + 1)
+        assert list(states[-1].effort) == [87.0] * 4 + [12.0] * 3
+        node.wait_for_log('until torque_ctrl_node answers')
+
+
+def test_free_running_goes_on_without_torques_on_its_brakes(start_node, observer):
+    states, reports = observer.listen(contract.JOINT_STATES), observer.listen(contract.DIAGNOSTICS)
+    start_node('panda_sim_node', mode='free_running')
+    observer.spin(lambda: len(states) > 1000 and len(reports) > 1)
+    assert (np.diff(stamps_ms(states)) == 1).all()
+    drift = np.abs(np.array(states[-1].position) - np.array(states[0].position)).max()
+    assert drift < 0.01
+    values = {v.key: v.value for v in reports[-1].status[0].values}
+    assert int(values['missed_commands']) > 500
+
+
+def test_free_running_is_controlled(start_node, observer):
+    states, commands = observer.listen(contract.JOINT_STATES), observer.listen(contract.EFFORT_COMMANDS)
+    start_node('panda_sim_node', mode='free_running')
+    start_node('torque_ctrl_node', prediction_horizon=0.004)
+    observer.spin(lambda: len(commands) > 1000)
+    q = np.array([m.position for m in states])
+    assert np.abs(q - q[0]).max() < 0.02
+    assert np.abs(np.diff([m.effort for m in states], axis=0)).max() < 40.0
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_leaves_cleanly(start_node, number):
+    node = start_node('panda_sim_node')
+    node.wait_for_log('ready')
+    assert node.stop(number) == 0
+    assert 'Traceback' not in node.log()
+
+
+@pytest.mark.parametrize(('parameters', 'said'), [
+    ({'mode': 'backwards'}, "'mode' has no choice 'backwards'"),
+    ({'ball_mass': 100.0}, "'ball_mass'"),
+    ({'seed': 'one'}, "'seed'"),
+])
+def test_wrong_parameters_are_named(start_node, parameters, said):
+    node = start_node('panda_sim_node', **parameters)
+    assert node.process.wait(20) == 2
+    assert said in node.log() and 'Traceback' not in node.log()

@@ -1,0 +1,5 @@
+"""``python -m shared_control``."""
+
+from .cli import main
+
+raise SystemExit(main())

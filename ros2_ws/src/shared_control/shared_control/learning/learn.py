@@ -1,0 +1,79 @@
+"""The learn loop: the same for a live graph and for an environment in this process."""
+
+import time
+
+from ..envs.balance_env import BalanceEnv
+from ..envs.plant import PlantInterrupted
+from .coached_ppo import CoachedPPO
+from .episode import Episode
+from .episode_ppo import EpisodePPO
+from .presets import Preset
+from .record import EpisodeRecord
+
+
+class Hooks:
+    """What the loop tells, and the one thing it asks. Override what is of interest."""
+
+    def stop(self) -> bool:
+        """Asked before each episode: whether to leave it at that."""
+        return False
+
+    def episode_started(self, record: EpisodeRecord) -> None:
+        """The ball is about to be dropped; ``record`` fills up from now on."""
+
+    def stepped(self, record: EpisodeRecord) -> None:
+        """One policy period has passed."""
+
+    def learning_started(self, record: EpisodeRecord) -> None:
+        """The episode is over, the update begins: the time to let the arm rest."""
+
+    def episode_learned(self, record: EpisodeRecord) -> None:
+        """The update is done, the learner consistent: the time to save it."""
+
+    def interrupted(self, error: PlantInterrupted) -> None:
+        """The plant went away: the episode is void and begins anew."""
+
+
+def make_learner(preset: Preset, seed: int = 0) -> EpisodePPO:
+    """The learner of a preset."""
+    return EpisodePPO(preset, seed) if preset.coaching is None else CoachedPPO(preset, seed)
+
+
+def learn(learner: EpisodePPO, env: BalanceEnv, episodes: int | None = None, hooks: Hooks | None = None) -> None:
+    """Learn, one update an episode, until ``learner.episode`` is ``episodes`` or the hooks say stop.
+
+    Args:
+        episodes: in all, those of an earlier run included; no end when None.
+    """
+    hooks = hooks or Hooks()
+    while (episodes is None or learner.episode < episodes) and not hooks.stop():
+        record = EpisodeRecord(learner.episode + 1, 'teach')
+        hooks.episode_started(record)
+        try:
+            episode = run_episode(learner, env, record, hooks)
+        except PlantInterrupted as error:
+            hooks.interrupted(error)
+            continue
+        hooks.learning_started(record)
+        started = time.monotonic()
+        learner.learn_from(episode)
+        record.learn_seconds = time.monotonic() - started
+        hooks.episode_learned(record)
+
+
+def run_episode(learner: EpisodePPO, env: BalanceEnv, record: EpisodeRecord, hooks: Hooks) -> Episode:
+    """One exploring episode."""
+    learner.start_episode()
+    observation, _ = env.reset(seed=learner.episode_seed())
+    episode = Episode()
+    ended = False
+    while not ended:
+        choice = learner.choose(observation)
+        observation, reward, terminated, truncated, info = env.step(choice.action)
+        episode.add(choice, reward, info['m_y_human'], info['m_y_applied'])
+        record.add(info)
+        hooks.stepped(record)
+        ended = terminated or truncated
+    episode.last_observation = observation
+    episode.terminated = terminated
+    return episode

@@ -1,0 +1,74 @@
+"""One node of the graph as a process."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+UNUSABLE = 2
+"""Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
+
+
+class NodeProcess:
+    """A node, its parameter file and its log.
+
+    Args:
+        name: package, module and node name alike.
+        parameters: ROS parameter file.
+        log: where stdout and stderr go, appended.
+        in_foreground: stay in this process' group, so that the node can use the terminal.
+    """
+
+    def __init__(self, name: str, parameters: Path, log: Path, in_foreground: bool = False):
+        self.name = name
+        self.log = log
+        self.starts = 0
+        self._command = [sys.executable, '-m', f'{name}.node', '--ros-args', '--params-file', str(parameters),
+                         '--disable-external-lib-logs']
+        self._in_foreground = in_foreground
+        self._process: subprocess.Popen | None = None
+
+    def start(self) -> None:
+        """Start it, or start it again."""
+        self.starts += 1
+        with self.log.open('ab') as log:
+            self._process = subprocess.Popen(
+                self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=node_environment(),
+                process_group=None if self._in_foreground else 0)
+
+    @property
+    def pid(self) -> int:
+        """Process id."""
+        assert self._process is not None, f'{self.name} was never started'
+        return self._process.pid
+
+    def exit_code(self) -> int | None:
+        """None while it runs."""
+        return None if self._process is None else self._process.poll()
+
+    def interrupt(self) -> None:
+        """Ask it to leave cleanly."""
+        if self._process is not None and self.exit_code() is None:
+            self._process.send_signal(signal.SIGINT)
+
+    def wait(self, seconds: float) -> None:
+        """Wait for it to leave; end it by force when it does not."""
+        if self._process is None:
+            return
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def last_error(self) -> str:
+        """The last line it wrote that says something."""
+        lines = [line.strip() for line in self.log.read_text(errors='replace').splitlines() if line.strip()]
+        errors = [line for line in lines if 'error' in line.lower()]
+        return (errors or lines or ['no output'])[-1]
+
+
+def node_environment() -> dict[str, str]:
+    """The environment of the nodes: one thread each, and DDS on this machine only unless told otherwise."""
+    return {'OMP_NUM_THREADS': '1', 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'PYTHONUNBUFFERED': '1', **os.environ}

@@ -1,0 +1,76 @@
+"""Keeps the nodes of a session alive and stops them in order."""
+
+import time
+from collections.abc import Callable
+
+from .node_process import UNUSABLE, NodeProcess
+
+MAX_RESTARTS_A_MINUTE = 5
+STOP_SECONDS = 10.0
+
+
+class SessionError(RuntimeError):
+    """The session cannot go on; the message says why and which log tells more."""
+
+
+class Supervisor:
+    """Runs nodes until one of them, the leader, is done.
+
+    Args:
+        nodes: in the order in which they start; they stop in the reverse order.
+        leader: the node whose clean exit ends the session.
+        say: told of every restart.
+    """
+
+    def __init__(self, nodes: list[NodeProcess], leader: str, say: Callable[[str], None]):
+        self._nodes = nodes
+        self._leader = leader
+        self._say = say
+        self._restarts: list[float] = []
+
+    def start(self) -> None:
+        """Start all nodes."""
+        for node in self._nodes:
+            node.start()
+
+    def poll(self) -> bool:
+        """Look after the nodes once; False when the leader has finished.
+
+        Raises:
+            SessionError: a node cannot run with its parameters, or dies again and again.
+        """
+        for node in self._nodes:
+            code = node.exit_code()
+            if code is None:
+                continue
+            if node.name == self._leader and code == 0:
+                return False
+            if code == UNUSABLE:
+                raise SessionError(f'{node.name}: {node.last_error()}')
+            self._restart(node, code)
+        return True
+
+    def _restart(self, node: NodeProcess, code: int) -> None:
+        now = time.monotonic()
+        self._restarts = [t for t in self._restarts if now - t < 60.0] + [now]
+        if len(self._restarts) > MAX_RESTARTS_A_MINUTE:
+            raise SessionError(
+                f'nodes died {len(self._restarts)} times within a minute, last {node.name} ({_meaning(code)}): '
+                f'{node.last_error()}; see {node.log}')
+        self._say(f'{node.name} died ({_meaning(code)}); starting it again')
+        node.start()
+
+    def stop(self) -> None:
+        """Stop the nodes, the last one started first, and wait for each."""
+        for node in reversed(self._nodes):
+            node.interrupt()
+            node.wait(STOP_SECONDS)
+
+    @property
+    def restarts(self) -> int:
+        """How often a node was started again."""
+        return sum(max(node.starts - 1, 0) for node in self._nodes)
+
+
+def _meaning(code: int) -> str:
+    return f'signal {-code}' if code < 0 else f'exit code {code}'

@@ -1,0 +1,195 @@
+"""The running controller, played to by a test that is the robot."""
+
+import signal
+import time
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import WrenchStamped
+from sensor_msgs.msg import JointState
+from shared_control.control.computed_torque import ComputedTorqueController
+from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.model import PandaModel
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control_ros import contract
+from shared_control_ros.stamps import set_ns
+from std_srvs.srv import SetBool
+
+MODEL = PandaModel()
+GRAVITY = MODEL.gravity(Q_REFERENCE).copy()
+
+
+class Robot:
+    """A robot that stands still at the reference and asks for torques."""
+
+    def __init__(self, observer):
+        self.observer = observer
+        self.commands = observer.listen(contract.EFFORT_COMMANDS)
+        self.applied = observer.listen(contract.APPLIED_WRENCH)
+        self.states = observer.publisher(contract.JOINT_STATES)
+        self.human = observer.publisher(contract.HUMAN_WRENCH)
+        self.agent = observer.publisher(contract.AGENT_WRENCH)
+        self.now_ns = time.time_ns() // 20_000_000 * 20_000_000
+        observer.spin(lambda: all(p.get_subscription_count() for p in (self.states, self.human, self.agent)))
+        self._be_heard(self.human)
+        self._be_heard(self.agent)
+
+    def _be_heard(self, source):
+        """Discovery has two sides: send until the controller shows that it listens."""
+        for m_y in (0.125, 0.0):
+            for _ in range(100):
+                self.send(source, m_y)
+                self.tick_once()
+                if self.applied and self.applied[-1].wrench.torque.y == m_y:
+                    break
+            else:
+                raise AssertionError('the controller does not hear its sources')
+
+    def tick_once(self):
+        """Publish the next tick; an answer may or may not come."""
+        self.now_ns += 1_000_000
+        self.states.publish(self.state())
+        self.observer.spin_for(0.05)
+
+    def state(self, **changes):
+        message = JointState(
+            name=list(JOINT_NAMES), position=Q_REFERENCE.tolist(), velocity=[0.0] * 7, effort=GRAVITY.tolist())
+        for name, value in changes.items():
+            setattr(message, name, value)
+        set_ns(message.header.stamp, self.now_ns)
+        return message
+
+    def tick(self, **changes):
+        """Publish the next tick and give the torque that answers it."""
+        self.now_ns += 1_000_000
+        count = len(self.commands)
+        self.states.publish(self.state(**changes))
+        self.observer.spin(lambda: len(self.commands) > count)
+        return np.array(self.commands[-1].data)
+
+    def send(self, publisher, m_y, age=0.0, frame=contract.BASE_FRAME):
+        message = WrenchStamped()
+        message.header.frame_id = frame
+        message.wrench.torque.y = m_y
+        set_ns(message.header.stamp, self.now_ns - int(age * 1e9))
+        publisher.publish(message)
+        time.sleep(0.05)
+
+    def moment(self):
+        """M_y that the torque of the next tick contains, N m."""
+        lever = MODEL.jacobian(Q_REFERENCE)[4]
+        return float((self.tick() - GRAVITY) @ lever / (lever @ lever))
+
+
+def expected(m_y):
+    return ComputedTorqueController(PandaModel()).torque(Q_REFERENCE, np.zeros(7), GRAVITY, m_y)
+
+
+@pytest.fixture(scope='class')
+def node(start_node):
+    return start_node('torque_ctrl_node')
+
+
+@pytest.fixture(scope='class')
+def robot(node, observer):
+    return Robot(observer)
+
+
+class TestRunningController:
+    """One controller for all: it keeps nothing from tick to tick."""
+
+    @pytest.fixture(autouse=True)
+    def silence(self, robot):
+        robot.now_ns += 1_000_000_000
+
+    def test_sums_the_moments_of_human_and_agent(self, robot):
+        np.testing.assert_array_equal(robot.tick(), expected(0.0))
+        robot.send(robot.human, 0.5)
+        robot.send(robot.agent, -0.2)
+        np.testing.assert_array_equal(robot.tick(), expected(0.3))
+        robot.observer.spin(lambda: robot.applied[-1].wrench.torque.y == pytest.approx(0.3))
+
+    def test_the_sum_and_the_torque_rate_are_limited(self, robot):
+        robot.send(robot.human, 1e6)
+        torque = robot.tick()
+        assert np.abs(torque - GRAVITY).max() <= 1.0 + 1e-12
+        robot.observer.spin(lambda: robot.applied[-1].wrench.torque.y == 20.0)
+
+    def test_a_silent_source_fades_to_nothing(self, robot):
+        robot.send(robot.human, 0.5)
+        full = robot.moment()
+        assert full > 0.1
+        robot.now_ns += 140_000_000
+        assert 0.0 < robot.moment() < full
+        robot.now_ns += 200_000_000
+        assert robot.moment() == pytest.approx(0.0, abs=1e-9)
+
+    @pytest.mark.parametrize(('fault', 'said'), [
+        ({'m_y': float('nan')}, 'torque.y is nan'),
+        ({'m_y': float('-inf')}, 'torque.y is -inf'),
+        ({'m_y': 0.5, 'frame': 'world'}, "frame_id is 'world'"),
+        ({'m_y': 0.5, 'age': 0.5}, 'old, more than command_timeout'),
+        ({'m_y': 0.5, 'age': -5.0}, 'use_sim_time'),
+    ])
+    def test_untrustworthy_wrenches_are_dropped_and_named(self, node, robot, fault, said):
+        time.sleep(1.0)  # an error is said once a second
+        robot.send(robot.human, **fault)
+        np.testing.assert_array_equal(robot.tick(), expected(0.0))
+        node.wait_for_log(said)
+        assert 'dropped a message on /human/target_wrench' in node.log()
+
+    def test_broken_joint_states_get_no_answer(self, node, robot):
+        answers = len(robot.commands)
+        robot.now_ns += 1_000_000
+        robot.states.publish(robot.state(position=[0.0] * 3))
+        node.wait_for_log('position has 3 values')
+        assert len(robot.commands) == answers
+        robot.tick()
+
+    def test_a_repeated_tick_is_answered_the_second_time(self, robot):
+        """The first repetition may be a leftover in the queue; the second means that the answer was lost."""
+        robot.tick()
+        count = len(robot.commands)
+        robot.states.publish(robot.state())
+        robot.observer.spin_for(0.3)
+        assert len(robot.commands) == count
+        robot.states.publish(robot.state())
+        robot.observer.spin(lambda: len(robot.commands) == count + 1)
+
+    def test_enable_and_disable(self, robot):
+        response = robot.observer.call(SetBool, contract.ENABLE_SERVICE, SetBool.Request(data=False))
+        assert response.success
+        count = len(robot.commands)
+        robot.tick_once()
+        robot.observer.spin_for(0.2)
+        assert len(robot.commands) == count
+        robot.observer.call(SetBool, contract.ENABLE_SERVICE, SetBool.Request(data=True))
+        robot.tick()
+
+    def test_says_once_a_second_how_it_fares(self, robot):
+        reports = robot.observer.listen(contract.DIAGNOSTICS)
+        deadline = time.monotonic() + 15
+        while not reports and time.monotonic() < deadline:
+            robot.tick()
+        status = reports[0].status[0]
+        assert {'period_p50_ms', 'period_p99_ms', 'overruns'} <= {value.key for value in status.values}
+        assert '/human/target_wrench: silent for' in status.message
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_leaves_cleanly(start_node, number):
+    node = start_node('torque_ctrl_node')
+    node.wait_for_log('ready')
+    assert node.stop(number) == 0
+    assert 'Traceback' not in node.log()
+
+
+@pytest.mark.parametrize(('parameters', 'said'), [
+    ({'gains': 'stiff'}, "'gains' has no choice 'stiff'"),
+    ({'command_timeout': 5.0}, "'command_timeout'"),
+    ({'moment_limit': 'much'}, "'moment_limit'"),
+])
+def test_wrong_parameters_are_named(start_node, parameters, said):
+    node = start_node('torque_ctrl_node', **parameters)
+    assert node.process.wait(20) == 2
+    assert said in node.log() and 'Traceback' not in node.log()
