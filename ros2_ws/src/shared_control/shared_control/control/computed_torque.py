@@ -50,10 +50,10 @@ class ComputedTorqueController:
         self._implicit_data = self._implicit.createData()
         self._kp = gains.kp
         self._kd = gains.kd
+        self._damping = gains.kp * self._horizon + gains.kd
         self._kd_horizon = gains.kd * self._horizon
         self._rate = TORQUE_RATE_MAX * dt
         self._q_reference = q_reference
-        self._still = np.zeros_like(q_reference)
         self._compensate = compensate_nonlinear
         self._robot_compensates_gravity = robot_compensates_gravity
 
@@ -70,16 +70,18 @@ class ComputedTorqueController:
             qd_reference: how fast, rad/s; at rest when not given.
         """
         q_reference = self._q_reference if q_reference is None else q_reference
-        qd_reference = self._still if qd_reference is None else qd_reference
         nonlinear = self._model.nonlinear_effects(q, qd)
         feedforward = self._model.jacobian(q)[WRENCH_ROW] * m_y
         if self._compensate:
-            feedforward = feedforward + nonlinear
-        explicit = self._kp * (q_reference - q - qd * self._horizon) + self._kd * (qd_reference - qd)
+            feedforward += nonlinear
+        # K_p (q_ref - q - qd h) + K_d (qd_ref - qd), with as few operations as it takes.
+        explicit = self._kp * (q_reference - q) - self._damping * qd
+        if qd_reference is not None:
+            explicit += self._kd * qd_reference
         acceleration = pin.aba(self._implicit, self._implicit_data, q, qd, explicit + feedforward)
         torque = explicit - self._kd_horizon * acceleration + feedforward
         if self._robot_compensates_gravity:
-            torque = torque - self._model.gravity(q)
+            torque -= self._model.gravity(q)
         return limit_torque(torque, effort, self._rate)
 
 

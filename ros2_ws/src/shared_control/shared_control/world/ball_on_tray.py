@@ -62,7 +62,7 @@ class BallOnTrayWorld:
         self.effort = self._holding_effort
         """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
         self._brakes = False
-        self._push = np.zeros(3)
+        self._push: np.ndarray | None = None
         self.reset(TRAY_HOME_X)
 
     def _find_links(self) -> None:
@@ -99,7 +99,7 @@ class BallOnTrayWorld:
             self.ball, [ball_x, BALL_START_Y, BALL_START_Z], [0, 0, 0, 1], physicsClientId=self.client)
         if self._brakes:
             self._release_brakes()
-        self._push[:] = 0.0
+        self._push = None
         self.effort = self._holding_effort
 
     def joint_state(self) -> tuple[np.ndarray, np.ndarray]:
@@ -115,7 +115,7 @@ class BallOnTrayWorld:
 
     def push(self, force: np.ndarray) -> None:
         """From the next tick on push the tray's origin with ``force`` ((3,), N, base axes), until told otherwise."""
-        self._push[:] = force
+        self._push = force if force.any() else None
 
     def step(self, torque: np.ndarray) -> None:
         """One tick with joint torques ``torque`` ((7,), N m), kept within the joints' limits."""
@@ -123,7 +123,7 @@ class BallOnTrayWorld:
             self._release_brakes()
         self.effort = np.minimum(np.maximum(torque, -TORQUE_MAX), TORQUE_MAX)
         pybullet.setJointMotorControlArray(
-            self.arm, self._joints, pybullet.TORQUE_CONTROL, forces=self.effort, physicsClientId=self.client)
+            self.arm, self._joints, pybullet.TORQUE_CONTROL, forces=self.effort.tolist(), physicsClientId=self.client)
         self._advance()
 
     def step_braked(self) -> None:
@@ -142,7 +142,7 @@ class BallOnTrayWorld:
         self._brakes = False
 
     def _advance(self) -> None:
-        if self._push.any():
+        if self._push is not None:
             origin = pybullet.getLinkState(self.arm, self.tray, physicsClientId=self.client)[4]
             pybullet.applyExternalForce(
                 self.arm, self.tray, self._push, origin, pybullet.WORLD_FRAME, physicsClientId=self.client)
