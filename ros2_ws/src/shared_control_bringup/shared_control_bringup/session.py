@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.human.profiles import PROFILES
-from shared_control.learning.evaluate import evaluate_policy_file
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.session.folder import SessionFolder
-from shared_control.session.report import write_report
+from session_recorder_node.recovery import recover
 
 from . import parameters as ros_parameters
+from .aftermath import report, show, test
 from .node_process import NodeProcess
 from .progress import EpisodePrinter
 from .supervisor import SessionError, Supervisor
@@ -44,3 +44,108 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--params-file', type=Path, default=ros_parameters.DEFAULTS, help='ROS parameters of the nodes')
     parser.add_argument('--no-screen', action='store_true', help='print a line an episode instead of the screen')
     parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run a session and report it; the exit code."""
+    folder, settings = _resumed(args.resume) if args.resume else _new(args)
+    if settings['tutor'] == 'keyboard' and not _has_terminal():
+        raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
+    shows_screen = _has_terminal() and not args.no_screen
+    parameters = _parameters(settings, folder, args.resume is not None, shows_screen)
+    ros_parameters.save(parameters, folder.parameters)
+    folder.settings.write_text(json.dumps(settings, indent=2) + '\n')
+
+    print(f'Session in {folder.path}: {settings["preset"]}, tutor: {settings["tutor"]}.', flush=True)
+    finished, restarts = _teach(settings, folder, shows_screen)
+    recover(folder.bag)
+    if finished and settings['test_episodes']:
+        test(folder, settings['test_episodes'])
+    report(folder, restarts)
+    show(folder)
+    if not finished:
+        print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}')
+    return 0 if finished else 130
+
+
+def _new(args: argparse.Namespace) -> tuple[SessionFolder, dict[str, Any]]:
+    """Folder and settings of a new session."""
+    path = args.output or Path('out/sessions') / time.strftime('%Y-%m-%d_%H-%M-%S')
+    settings = {
+        'preset': args.preset, 'tutor': f'simulated: {args.profile}' if args.tutor == 'sim' else args.tutor,
+        'episodes': args.episodes, 'minutes': args.minutes, 'test_episodes': args.test_episodes, 'seed': args.seed,
+        'params_file': str(args.params_file)}
+    return SessionFolder.create(path, overwrite=args.overwrite), settings
+
+
+def _resumed(path: Path) -> tuple[SessionFolder, dict[str, Any]]:
+    """Folder and settings of an earlier session."""
+    folder = SessionFolder.open(path)
+    return folder, json.loads(folder.settings.read_text())
+
+
+def _parameters(settings: dict[str, Any], folder: SessionFolder, resume: bool, shows_screen: bool,
+                ) -> dict[str, dict[str, Any]]:
+    """ROS parameters of all nodes."""
+    parameters = ros_parameters.load(Path(settings['params_file']))
+
+    def put(node: str, **values: Any) -> None:
+        parameters.setdefault(node, {}).update(values)
+
+    put('panda_sim_node', seed=settings['seed'])
+    put('torque_ctrl_node', moment_limit=preset(settings['preset']).task.moment_limit)
+    put('teleop_key_node', screen='auto' if shows_screen else 'off')
+    put('ppo_agent_node', preset=settings['preset'], seed=settings['seed'], episodes=settings['episodes'],
+        max_minutes=settings['minutes'], output=str(folder.learner), resume=resume)
+    put('session_recorder_node', output=str(folder.bag))
+    if settings['tutor'].startswith('simulated'):
+        put('sim_tutor_node', profile=settings['tutor'].removeprefix('simulated: '), seed=settings['seed'])
+    return parameters
+
+
+def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) -> tuple[bool, int]:
+    """Run the graph until the agent is done or somebody stops it: whether it was done, and restarts of nodes."""
+    names = ['session_recorder_node', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node']
+    if settings['tutor'].startswith('simulated'):
+        names.append('sim_tutor_node')
+    nodes = [NodeProcess(name, folder.parameters, folder.logs / f'{name}.log',
+                         in_foreground=shows_screen and name == 'teleop_key_node') for name in names]
+    log = (folder.logs / 'session.log').open('a')
+
+    def say(text: str) -> None:
+        print(time.strftime('%H:%M:%S'), text, file=log, flush=True)
+        if not shows_screen:
+            print(text, flush=True)
+
+    supervisor = Supervisor(nodes, 'ppo_agent_node', say)
+    episodes = EpisodePrinter(folder.episodes, say)
+    previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
+    try:
+        supervisor.start()
+        while supervisor.poll():
+            episodes.poll()
+            time.sleep(POLL_SECONDS)
+        finished = True
+    except KeyboardInterrupt:
+        finished = False
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        supervisor.stop()
+        episodes.poll()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+        log.close()
+    return finished, supervisor.restarts
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _has_terminal() -> bool:
+    try:
+        Path('/dev/tty').open('rb').close()
+    except OSError:
+        return False
+    return sys.stdin.isatty()
