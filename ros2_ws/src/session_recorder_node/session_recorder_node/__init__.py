@@ -1,1 +1,6 @@
 """Records every topic of the contract into an MCAP bag."""
+
+from .bag_folder import BagError
+from .recovery import Recovered, recover
+
+__all__ = ['BagError', 'Recovered', 'recover']

@@ -28,6 +28,8 @@ def declare(node: Node, name: str, default: Any, description: str, *, unit: str 
             descriptor.floating_point_range = [FloatingPointRange(from_value=minimum, to_value=maximum)]
         else:
             descriptor.integer_range = [IntegerRange(from_value=int(minimum), to_value=int(maximum))]
+    # YAML reads a bare off as a boolean: take it, and every other type, and compare with the choices below.
+    descriptor.dynamic_typing = bool(choices) and isinstance(default, str)
     try:
         value = node.declare_parameter(name, default, descriptor).value
     except InvalidParameterTypeException as error:
@@ -37,6 +39,8 @@ def declare(node: Node, name: str, default: Any, description: str, *, unit: str 
         span = f'{minimum} to {maximum}' if minimum is not None else 'see description'
         raise ParameterError(f'parameter {name!r} is out of range ({span}): {error}. {text}') from error
     if choices:
+        if isinstance(value, bool):
+            value = 'on' if value else 'off'
         wrong = [v for v in (value if isinstance(value, list) else [value]) if v not in choices]
         if wrong:
             raise ParameterError(f'parameter {name!r} has no choice {wrong[0]!r}. {text}')

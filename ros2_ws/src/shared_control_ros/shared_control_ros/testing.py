@@ -5,7 +5,6 @@ long as a test class: tests that can share a running node stand in one class, al
 """
 
 import fcntl
-import os
 import signal
 import subprocess
 import sys
@@ -105,10 +104,11 @@ def start_node(domain_id: int, tmp_path_factory: pytest.TempPathFactory) -> Iter
         return nodes[-1]
 
     yield start
-    for node in reversed(nodes):
+    for node in nodes:
         if node.process.poll() is None:
-            os.kill(node.process.pid, signal.SIGKILL)
-        node.process.wait()
+            node.process.terminate()
+    for node in nodes:
+        node.stop(signal.SIGTERM)
 
 
 class Observer:

@@ -1,0 +1,43 @@
+"""Which files a bag folder holds, and who may write them."""
+
+import fcntl
+import os
+import re
+from pathlib import Path
+from typing import IO
+
+_NUMBER = re.compile(r'_(\d+)\.mcap$')
+
+
+class BagError(OSError):
+    """A bag cannot be written or read; the message names the file and the reason."""
+
+
+def bag_files(bag: Path) -> list[Path]:
+    """The ``<name>_<number>.mcap`` files of a bag in the order in which they were recorded."""
+    return sorted((path for path in bag.glob('*.mcap') if _NUMBER.search(path.name)), key=_number)
+
+
+def next_file(bag: Path) -> Path:
+    """The file that a recorder starting now writes; it does not exist yet."""
+    files = bag_files(bag)
+    return bag / f'{bag.name}_{_number(files[-1]) + 1 if files else 0}.mcap'
+
+
+def lock(file: IO[bytes], path: Path) -> None:
+    """Claim a file for this process until it is closed or the process ends, however it ends.
+
+    Raises:
+        BagError: another process is writing the file, or has removed it.
+    """
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        raise BagError(f'{path} is being recorded by another process') from error
+    if not os.fstat(file.fileno()).st_nlink:
+        raise BagError(f'{path} was removed by another process')
+
+
+def _number(path: Path) -> int:
+    found = _NUMBER.search(path.name)
+    return int(found[1]) if found else -1

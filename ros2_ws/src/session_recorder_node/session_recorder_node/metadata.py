@@ -1,0 +1,113 @@
+"""A bag's ``metadata.yaml``, made from the files that it describes (version 9, as rosbag2 of Jazzy writes it)."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import yaml
+from mcap.reader import make_reader
+from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
+
+from .bag_folder import BagError, bag_files
+
+_NEVER = 2 ** 63 - 1
+"""What rosbag2 gives as the start of a file without a message, ns."""
+
+
+def blank_metadata() -> str:
+    """What rosbag2 puts at the head of an MCAP file: it tells a reader the version in which the file is written."""
+    return _dump(_describe([]))
+
+
+def read_summary(path: Path) -> Summary | None:
+    """The index at the end of an MCAP file, or None when the file was left unfinished."""
+    with path.open('rb') as file:
+        file.seek(max(len(MCAP0_MAGIC), path.stat().st_size - len(MCAP0_MAGIC)))
+        if file.read() != MCAP0_MAGIC:
+            return None
+        file.seek(0)
+        return make_reader(file).get_summary()
+
+
+def lists_all_files(bag: Path) -> bool:
+    """Whether ``metadata.yaml`` names every file of the bag."""
+    path = bag / 'metadata.yaml'
+    if not path.exists():
+        return False
+    try:
+        named = yaml.safe_load(path.read_text())['rosbag2_bagfile_information']['relative_file_paths']
+    except (yaml.YAMLError, KeyError, TypeError) as error:
+        raise BagError(f'{path} is no metadata of a bag; move it away') from error
+    return {file.name for file in bag_files(bag)} <= set(named)
+
+
+def write_metadata(bag: Path) -> None:
+    """Write ``metadata.yaml`` for the finished files of a bag; an unfinished one is left out until it is finished."""
+    summaries = [(path.name, read_summary(path)) for path in bag_files(bag)]
+    finished = [(name, summary) for name, summary in summaries if summary is not None]
+    target = bag / 'metadata.yaml'
+    unfinished = target.with_suffix('.yaml.tmp')
+    unfinished.write_text(_dump({'rosbag2_bagfile_information': _describe(finished)}))
+    unfinished.replace(target)
+
+
+def _describe(files: list[tuple[str, Summary]]) -> dict[str, Any]:
+    """The content of ``metadata.yaml`` for these files."""
+    spans = [_span(summary) for _, summary in files]
+    start = min((first for first, _ in spans), default=_NEVER)
+    end = max((last for first, last in spans if first != _NEVER), default=start)
+    return {
+        'version': 9,
+        'storage_identifier': 'mcap',
+        'duration': {'nanoseconds': end - start},
+        'starting_time': {'nanoseconds_since_epoch': start},
+        'message_count': sum(_count(summary) for _, summary in files),
+        'topics_with_message_count': _topics([summary for _, summary in files]),
+        'compression_format': '',
+        'compression_mode': '',
+        'relative_file_paths': [name for name, _ in files],
+        'files': [{
+            'path': name,
+            'starting_time': {'nanoseconds_since_epoch': first},
+            'duration': {'nanoseconds': last - first},
+            'message_count': _count(summary),
+        } for (name, summary), (first, last) in zip(files, spans, strict=True)],
+        'custom_data': None,
+        'ros_distro': os.environ.get('ROS_DISTRO', 'jazzy'),
+    }
+
+
+def _topics(summaries: list[Summary]) -> list[dict[str, Any]]:
+    """Every topic of the files once, with the sum of its messages."""
+    topics: dict[str, dict[str, Any]] = {}
+    for summary in summaries:
+        for channel in summary.channels.values():
+            topic = topics.setdefault(channel.topic, {
+                'topic_metadata': {
+                    'name': channel.topic,
+                    'type': summary.schemas[channel.schema_id].name,
+                    'serialization_format': channel.message_encoding,
+                    'offered_qos_profiles': yaml.safe_load(channel.metadata['offered_qos_profiles']),
+                    'type_description_hash': channel.metadata['topic_type_hash'],
+                },
+                'message_count': 0,
+            })
+            if summary.statistics is not None:
+                topic['message_count'] += summary.statistics.channel_message_counts.get(channel.id, 0)
+    return list(topics.values())
+
+
+def _count(summary: Summary) -> int:
+    return summary.statistics.message_count if summary.statistics else 0
+
+
+def _span(summary: Summary) -> tuple[int, int]:
+    """When the first and the last message of a file came, ns."""
+    if summary.statistics is None or not summary.statistics.message_count:
+        return _NEVER, _NEVER
+    return summary.statistics.message_start_time, summary.statistics.message_end_time
+
+
+def _dump(content: dict[str, Any]) -> str:
+    return yaml.safe_dump(content, sort_keys=False)
