@@ -1,9 +1,11 @@
 """One node of the graph as a process."""
 
+import ctypes
 import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 UNUSABLE = 2
@@ -28,20 +30,30 @@ class NodeProcess:
                          '--disable-external-lib-logs']
         self._in_foreground = in_foreground
         self._process: subprocess.Popen | None = None
+        self._log_start = 0
 
     def start(self) -> None:
         """Start it, or start it again."""
         self.starts += 1
+        self._log_start = self.log.stat().st_size if self.log.exists() else 0
         with self.log.open('ab') as log:
             self._process = subprocess.Popen(
                 self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=node_environment(),
-                process_group=None if self._in_foreground else 0)
+                process_group=None if self._in_foreground else 0, preexec_fn=_leave_with_the_parent)
 
     @property
     def pid(self) -> int:
         """Process id."""
         assert self._process is not None, f'{self.name} was never started'
         return self._process.pid
+
+    def wait_ready(self, seconds: float) -> None:
+        """Wait until it says that it is ready, has ended, or the time is over."""
+        deadline = time.monotonic() + seconds
+        while self.exit_code() is None and time.monotonic() < deadline:
+            if b'ready' in self.log.read_bytes()[self._log_start:]:
+                return
+            time.sleep(0.05)
 
     def exit_code(self) -> int | None:
         """None while it runs."""
@@ -67,6 +79,12 @@ class NodeProcess:
         lines = [line.strip() for line in self.log.read_text(errors='replace').splitlines() if line.strip()]
         errors = [line for line in lines if 'error' in line.lower()]
         return (errors or lines or ['no output'])[-1]
+
+
+def _leave_with_the_parent() -> None:
+    """Have this process asked to leave when the session that started it dies, even by SIGKILL."""
+    set_parent_death_signal = 1
+    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)
 
 
 def node_environment() -> dict[str, str]:

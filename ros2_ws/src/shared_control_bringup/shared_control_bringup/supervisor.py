@@ -6,6 +6,7 @@ from collections.abc import Callable
 from .node_process import UNUSABLE, NodeProcess
 
 MAX_RESTARTS_A_MINUTE = 5
+READY_SECONDS = 10.0
 STOP_SECONDS = 10.0
 
 
@@ -29,8 +30,10 @@ class Supervisor:
         self._restarts: list[float] = []
 
     def start(self) -> None:
-        """Start all nodes."""
-        for node in self._nodes:
+        """Start all nodes; the first one, which hears all others, is ready before they begin."""
+        self._nodes[0].start()
+        self._nodes[0].wait_ready(READY_SECONDS)
+        for node in self._nodes[1:]:
             node.start()
 
     def poll(self) -> bool:

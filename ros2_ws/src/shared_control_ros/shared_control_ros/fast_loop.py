@@ -68,6 +68,11 @@ class Polled:
         """The next waiting message and its ``source_timestamp`` and ``received_timestamp`` in ns, or None."""
         return self._handle.take_message(self._type, self._raw)
 
+    def clear(self) -> None:
+        """Drop what waits."""
+        while self.take() is not None:
+            pass
+
     def wait_ready(self, timeout: float) -> None:
         """Return when a message waits, or after ``timeout`` seconds."""
         self._wait_set.clear_entities()

@@ -1,0 +1,25 @@
+"""Lines about finished episodes."""
+
+from shared_control_bringup.progress import EpisodePrinter
+
+HEAD = 'episode,phase,return,human_share,fallen,settled_position_error\n'
+
+
+def test_tells_each_finished_episode_once(tmp_path):
+    path, said = tmp_path / 'episodes.csv', []
+    printer = EpisodePrinter(path, said.append)
+    printer.poll()
+    path.write_text(HEAD + '1,teach,-12.5,0.5,1,0.1\n2,teach,300.25,0.25,0,0.0')
+    printer.poll()
+    assert len(said) == 1 and 'the ball fell' in said[0]
+    path.write_text(HEAD + '1,teach,-12.5,0.5,1,0.1\n2,teach,300.25,0.25,0,0.004\n')
+    printer.poll()
+    printer.poll()
+    assert len(said) == 2 and '4.0 mm' in said[1] and '25%' in said[1]
+
+
+def test_what_an_earlier_run_wrote_is_not_told_again(tmp_path):
+    path, said = tmp_path / 'episodes.csv', []
+    path.write_text(HEAD + '1,teach,1,0,0,0.1\n')
+    EpisodePrinter(path, said.append).poll()
+    assert said == []

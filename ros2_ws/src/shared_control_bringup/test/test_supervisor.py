@@ -1,0 +1,108 @@
+"""The supervisor and real nodes."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from shared_control_bringup import parameters
+from shared_control_bringup.node_process import NodeProcess
+from shared_control_bringup.supervisor import SessionError, Supervisor
+
+
+@pytest.fixture
+def make_node(domain_id, tmp_path):
+    file = tmp_path / 'parameters.yaml'
+    parameters.save(parameters.load(), file)
+
+    def make(name, **changes):
+        if changes:
+            content = parameters.load()
+            content[name].update(changes)
+            parameters.save(content, file)
+        return NodeProcess(name, file, tmp_path / f'{name}.log')
+
+    return make
+
+
+def poll_until(supervisor, condition, seconds=20.0):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline
+        assert supervisor.poll()
+        time.sleep(0.05)
+
+
+def alive(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_a_killed_node_is_started_again_and_all_are_stopped(make_node):
+    said = []
+    nodes = [make_node('panda_sim_node'), make_node('torque_ctrl_node')]
+    supervisor = Supervisor(nodes, 'ppo_agent_node', said.append)
+    supervisor.start()
+    try:
+        poll_until(supervisor, lambda: 'ready' in nodes[1].log.read_text())
+        killed = nodes[1].pid
+        os.kill(killed, signal.SIGKILL)
+        poll_until(supervisor, lambda: nodes[1].pid != killed)
+        assert said == ['torque_ctrl_node died (signal 9); starting it again']
+        assert supervisor.restarts == 1
+        poll_until(supervisor, lambda: nodes[1].log.read_text().count('ready') == 2)
+    finally:
+        supervisor.stop()
+    assert not any(alive(node.pid) for node in nodes)
+    assert [node.exit_code() for node in nodes] == [0, 0]
+
+
+def test_a_wrong_parameter_ends_the_session_and_is_told(make_node):
+    node = make_node('panda_sim_node', mode='sideways')
+    supervisor = Supervisor([node], 'ppo_agent_node', print)
+    supervisor.start()
+    with pytest.raises(SessionError, match=r"panda_sim_node: .*'mode' has no choice 'sideways'"):
+        poll_until(supervisor, lambda: False)
+
+
+def test_a_node_that_dies_again_and_again_ends_the_session(make_node):
+    node = make_node('torque_ctrl_node')
+    supervisor = Supervisor([node], 'ppo_agent_node', lambda _: None)
+    supervisor.start()
+
+    def kill():
+        os.kill(node.pid, signal.SIGKILL)
+        return False
+
+    with pytest.raises(SessionError, match='died 6 times within a minute'):
+        poll_until(supervisor, kill)
+    supervisor.stop()
+
+
+def test_nodes_leave_when_the_session_is_killed(domain_id, tmp_path):
+    script = f"""
+import time
+from pathlib import Path
+from shared_control_bringup import parameters
+from shared_control_bringup.node_process import NodeProcess
+parameters.save(parameters.load(), Path({str(tmp_path / 'p.yaml')!r}))
+node = NodeProcess('torque_ctrl_node', Path({str(tmp_path / 'p.yaml')!r}), Path({str(tmp_path / 'log')!r}))
+node.start()
+node.wait_ready(20)
+print(node.pid, flush=True)
+time.sleep(60)
+"""
+    session = subprocess.Popen([sys.executable, '-c', script], stdout=subprocess.PIPE, text=True)
+    pid = int(session.stdout.readline())
+    assert alive(pid)
+    session.kill()
+    session.wait()
+    deadline = time.monotonic() + 10
+    while alive(pid):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)

@@ -1,0 +1,54 @@
+"""Receiving by hand, beside an executor that serves the rest."""
+
+import time
+
+from rclpy.node import Node
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Background, Polled
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import Trigger
+
+
+def test_a_polled_subscription_gives_the_newest_and_waits_for_the_next(observer):
+    publisher = observer.publisher(contract.EFFORT_COMMANDS)
+    polled = Polled(observer.node, contract.EFFORT_COMMANDS)
+    observer.spin(publisher.get_subscription_count)
+    assert polled.take() is None
+    while polled.wait(0.1) is None:  # until discovery is complete on both sides
+        publisher.publish(Float64MultiArray(data=[0.0]))
+    for value in (1.0, 2.0, 3.0):
+        publisher.publish(Float64MultiArray(data=[value]))
+    time.sleep(0.2)
+    observer.spin_for(0.1)  # an executor leaves it alone
+    assert list(polled.take().data) == [3.0]
+    started = time.monotonic()
+    assert polled.wait(0.1) is None
+    assert time.monotonic() - started >= 0.09
+
+
+def test_raw_messages_are_bytes(observer):
+    publisher = observer.publisher(contract.EFFORT_COMMANDS)
+    polled = Polled(observer.node, contract.EFFORT_COMMANDS, raw=True)
+    message = None
+    while message is None:
+        publisher.publish(Float64MultiArray(data=[1.5]))
+        message = polled.wait(0.1)
+    assert isinstance(message, bytes)
+
+
+def test_background_serves_when_polled(observer):
+    server = Node('server', context=observer.context)
+    server.create_service(Trigger, '~/hello', lambda _, response: Trigger.Response(success=True))
+    background = Background(server)
+    client = observer.node.create_client(Trigger, 'server/hello')
+    observer.spin(client.service_is_ready)
+    future = client.call_async(Trigger.Request())
+
+    def answered():
+        background.poll()
+        return future.done()
+
+    observer.spin(answered)
+    assert future.result().success
+    background.close()
+    server.destroy_node()

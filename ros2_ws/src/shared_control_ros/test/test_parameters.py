@@ -1,0 +1,33 @@
+"""Parameters with ranges and choices."""
+
+import pytest
+from rclpy.parameter import Parameter
+from shared_control_ros.parameters import ParameterError, declare
+
+
+@pytest.fixture
+def node(observer):
+    return observer.node
+
+
+def test_default_description_and_unit(node):
+    assert declare(node, 'my_rate', 50.0, 'How often.', unit='Hz', minimum=1.0, maximum=100.0, read_only=False) == 50.0
+    descriptor = node.describe_parameter('my_rate')
+    assert descriptor.description == 'How often. [Hz]'
+    assert descriptor.floating_point_range[0].to_value == 100.0
+
+
+def test_a_range_holds_at_run_time(node):
+    declare(node, 'my_rate', 50.0, 'How often.', minimum=1.0, maximum=100.0, read_only=False)
+    assert not node.set_parameters([Parameter('my_rate', value=1000.0)])[0].successful
+    assert node.set_parameters([Parameter('my_rate', value=10.0)])[0].successful
+
+
+def test_a_default_that_is_no_choice_is_refused(node):
+    with pytest.raises(ParameterError, match=r"'my_mode' has no choice 'c'.*One of: a, b"):
+        declare(node, 'my_mode', 'c', 'How.', choices=('a', 'b'))
+
+
+def test_parameters_are_fixed_unless_told_otherwise(node):
+    declare(node, 'my_size', 3, 'How large.')
+    assert not node.set_parameters([Parameter('my_size', value=4)])[0].successful
