@@ -1,12 +1,13 @@
 """One node of the graph as a process."""
 
-import ctypes
 import os
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+
+from shared_control_ros.processes import leave_with_the_parent
 
 UNUSABLE = 2
 """Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
@@ -39,7 +40,7 @@ class NodeProcess:
         with self.log.open('ab') as log:
             self._process = subprocess.Popen(
                 self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=node_environment(),
-                process_group=None if self._in_foreground else 0, preexec_fn=_leave_with_the_parent)
+                process_group=None if self._in_foreground else 0, preexec_fn=leave_with_the_parent)
 
     @property
     def pid(self) -> int:
@@ -79,12 +80,6 @@ class NodeProcess:
         lines = [line.strip() for line in self.log.read_text(errors='replace').splitlines() if line.strip()]
         errors = [line for line in lines if 'error' in line.lower()]
         return (errors or lines or ['no output'])[-1]
-
-
-def _leave_with_the_parent() -> None:
-    """Have this process asked to leave when the session that started it dies, even by SIGKILL."""
-    set_parent_death_signal = 1
-    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)
 
 
 def node_environment() -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 from sensor_msgs.msg import JointState
+
 from shared_control.robot.limits import JOINT_NAMES
 
 

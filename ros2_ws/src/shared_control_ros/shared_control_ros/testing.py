@@ -23,6 +23,7 @@ from rclpy.node import Node
 
 from .contract import Topic
 from .fast_loop import Polled
+from .processes import leave_with_the_parent
 
 __all__ = ['domain_id', 'observer', 'start_node']
 
@@ -59,7 +60,8 @@ class RunningNode:
         self.log_file = log
         with log.open('wb') as output:
             self.process = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True)
+                command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True,
+                preexec_fn=leave_with_the_parent)
 
     def log(self) -> str:
         """What it has printed so far."""

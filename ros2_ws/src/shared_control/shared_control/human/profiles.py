@@ -16,15 +16,15 @@ class TutorProfile:
     """Most key presses a second, 1/s."""
     position_noise: float = 0.004
     """Standard deviation of the position as seen, m."""
-    velocity_noise: float = 0.015
+    velocity_noise: float = 0.010
     """m/s"""
-    pitch_noise: float = 0.004
+    pitch_noise: float = 0.003
     """rad"""
     stiffness: float = 0.6
     """Tilt wanted for each metre that the ball is off the centre, rad/m."""
     damping: float = 0.45
     """Tilt wanted against each m/s of the ball, rad s/m."""
-    tolerance: float = 1.5
+    tolerance: float = 3.0
     """What the robot may lack before the tutor helps, N m."""
     watches: bool = True
     """False: presses keys that have nothing to do with the ball."""
@@ -35,9 +35,9 @@ EXPERT = TutorProfile()
 PROFILES: dict[str, TutorProfile] = {
     'expert': EXPERT,
     'high': replace(
-        EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.03, pitch_noise=0.008),
+        EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.02, pitch_noise=0.006),
     'low': replace(
-        EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.045, pitch_noise=0.012),
+        EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.03, pitch_noise=0.009),
     'sham': replace(EXPERT, watches=False),
 }
 """``expert``, ``high`` and ``low`` performer (4.4, 4.5), and ``sham``, whose keys are unrelated to the ball."""

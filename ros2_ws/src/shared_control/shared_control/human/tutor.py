@@ -1,5 +1,6 @@
 """A simulated tutor: a model of someone who watches the tray and presses keys."""
 
+import math
 from collections import deque
 from dataclasses import dataclass
 
@@ -18,6 +19,19 @@ TILT_OF_MOMENT = 0.006
 
 TILT_WANTED_MAX = 0.09
 """rad: no tutor asks for a steeper tray."""
+
+
+NOISE_SECONDS = 0.3
+"""How long an error of perception lasts, s."""
+
+TRUST_SECONDS = 3.0
+"""How fast a tutor comes to trust the robot, or ceases to, s."""
+
+_STREAM = 1
+"""Keeps the tutor's random numbers apart from the ball starts of the same seed."""
+
+ROUNDING = 1e-6
+"""Of times, s."""
 
 
 @dataclass(frozen=True)
@@ -40,36 +54,40 @@ class _Memory:
 
 
 class SimulatedTutor:
-    """Sees late and inexactly, thinks ahead, and presses at most one key at a time.
+    """Sees late and inexactly, thinks ahead, and presses one key at a time, no faster than a hand can.
 
-    At each decision the tutor has the picture of ``reaction_time`` ago, with noise on it. From it and from the keys
-    pressed since, the tutor predicts ball and tilt of now, and compares the tilt that the robot produces on its own
-    with the one that would bring the ball to the centre (a spring and a damper). What lacks, in whole keystrokes, is
-    what the tutor wants the keys to hold; one key press goes one keystroke there, space goes to nothing. So a tutor
-    lets go when the robot does well.
+    What the tutor sees is ``reaction_time`` old and has an error. The tutor knows which keys were pressed since, and
+    so what they are about to do. A spring and a damper make the tilt that would bring the ball to the centre; what
+    lacks of it in the tilt that the robot makes on its own, in whole keystrokes, is what the keys should hold. One
+    press goes one keystroke there; space goes to nothing.
 
-    As :class:`shared_control.envs.local_plant.Person` it holds the keys of an environment in process; a node calls
-    :meth:`key` and publishes what it returns.
+    How far the tutor thinks ahead is a matter of trust. A robot that tilts the tray as the tutor would have, at the
+    moment that the tutor now sees, will go on to do so, and needs no help for what is yet to come. A robot that
+    does not is taken to keep its tilt as it is. So the tutor lets go of a robot that does well.
+
+    As a ``Person`` (:mod:`shared_control.envs.local_plant`) it holds the keys of an environment in process; a node
+    calls :meth:`key` and publishes what it returns.
 
     Args:
         profile: who it is.
-        seed: of noise and of the sham's keys; :meth:`reset` takes another.
+        seed: of the errors of perception, and of the keys of who does not watch.
     """
 
-    def __init__(self, profile: TutorProfile, seed: int | None = None):
+    def __init__(self, profile: TutorProfile, seed: int = 0):
         self.profile = profile
         self._model = PandaModel()
         self._keys = KeyMoment()
-        self._random = np.random.default_rng(seed)
-        self.reset(None)
+        self.reset(seed)
 
     def reset(self, seed: int | None) -> None:
-        """A new episode: no keys held, nothing seen yet. A ``seed`` begins the random numbers anew."""
+        """A new episode: no keys held, nothing seen yet, no trust. A ``seed`` begins the random numbers anew."""
         if seed is not None:
-            self._random = np.random.default_rng(seed)
+            self._random = np.random.default_rng((seed, _STREAM))
         self._keys.release()
         self._steps = 0
         self._memory: deque[_Memory] = deque()
+        self._error = np.zeros(3)
+        self._trust = 0.0
         self._may_press_at = 0.0
 
     def moment(self, state: PlantState) -> float:
@@ -86,56 +104,66 @@ class SimulatedTutor:
         return Picture(float(position[0]) - state.ball_position[0], state.ball_velocity[0], pitch(rotation))
 
     def key(self, seconds: float, picture: Picture, m_y_human: float) -> Key | None:
-        """The key to press now, if any.
+        """The key to press now, if any. Call at 50 Hz or so.
 
         Args:
             seconds: time, s; must not run backwards within an episode.
             picture: what there is to see now.
             m_y_human: M_yh as the keys leave it now, N m.
         """
-        self._memory.append(_Memory(seconds, picture, m_y_human))
-        seen = self._seen(seconds)
-        if seen is None or seconds < self._may_press_at:
+        elapsed = seconds - self._memory[-1].seconds if self._memory else 0.0
+        self._memory.append(_Memory(seconds, self._blurred(picture, elapsed), m_y_human))
+        latest = seconds - self.profile.reaction_time + ROUNDING
+        while len(self._memory) > 1 and self._memory[1].seconds <= latest:
+            self._memory.popleft()
+        seen = self._memory[0]
+        if seen.seconds > latest:
             return None
-        if self.profile.watches:
-            key = self._towards(self._wanted(seen, m_y_human), m_y_human)
-        else:
-            key = self._random.choice([None, *Key])
+        wanted = self._wanted(seen, seconds - seen.seconds, elapsed, m_y_human)
+        if seconds < self._may_press_at:
+            return None
+        key = _towards(wanted, m_y_human) if self.profile.watches else self._random.choice([None, *Key])
         if key is not None:
-            self._may_press_at = seconds + 1.0 / self.profile.key_rate
+            self._may_press_at = seconds + 1.0 / self.profile.key_rate - ROUNDING
         return key
 
-    def _seen(self, seconds: float) -> _Memory | None:
-        """What ``GLANCE`` seconds of looking, a reaction time ago, leave in the mind; None when it is too early."""
-        latest = seconds - self.profile.reaction_time + 1e-6
-        while self._memory[0].seconds < latest - GLANCE:
-            self._memory.popleft()
-        glance = [memory for memory in self._memory if memory.seconds <= latest]
-        if not glance:
-            return None
-        mean = np.mean([(m.seconds, m.picture.position_error, m.picture.velocity, m.picture.pitch, m.m_y_human)
-                        for m in glance], axis=0)
-        return _Memory(mean[0], Picture(*mean[1:4]), mean[4])
-
-    def _wanted(self, seen: _Memory, m_y_human: float) -> float:
-        """M_yh that would make up for what the robot lacks, in whole keystrokes, N m."""
+    def _blurred(self, picture: Picture, elapsed: float) -> Picture:
+        """The picture as perceived, ``elapsed`` s after the last one."""
         p = self.profile
-        error, velocity, tilt = (seen.picture.position_error, seen.picture.velocity, seen.picture.pitch) + (
-            self._random.normal(0.0, (p.position_noise, p.velocity_noise, p.pitch_noise)))
-        tilt_now = tilt + TILT_OF_MOMENT * (m_y_human - seen.m_y_human)
-        velocity_now = velocity + BALL_ACCELERATION * (tilt + tilt_now) / 2 * p.reaction_time
-        error_now = error - (velocity + velocity_now) / 2 * p.reaction_time
-        tilt_wanted = np.clip(p.stiffness * error_now - p.damping * velocity_now, -TILT_WANTED_MAX, TILT_WANTED_MAX)
-        lacking = (tilt_wanted - tilt_now) / TILT_OF_MOMENT + m_y_human
-        if abs(lacking) < p.tolerance:
+        kept = np.exp(-elapsed / NOISE_SECONDS)
+        self._error = kept * self._error + np.sqrt(1.0 - kept**2) * self._random.normal(
+            0.0, (p.position_noise, p.velocity_noise, p.pitch_noise))
+        position, velocity, tilt = self._error
+        return Picture(picture.position_error + position, picture.velocity + velocity, picture.pitch + tilt)
+
+    def _wanted(self, seen: _Memory, lead: float, elapsed: float, m_y_human: float) -> float:
+        """M_yh that makes up for what the robot lacks, in whole keystrokes, N m; ``lead`` s after what was seen."""
+        error, velocity, tilt = seen.picture.position_error, seen.picture.velocity, seen.picture.pitch
+        robot_tilt = tilt - TILT_OF_MOMENT * seen.m_y_human
+        ideal_then = self._ideal_tilt(error, velocity)
+        did_well = abs(ideal_then - robot_tilt) < TILT_OF_MOMENT * self.profile.tolerance
+        self._trust += (did_well - self._trust) * elapsed / TRUST_SECONDS
+
+        tilt_now = robot_tilt + TILT_OF_MOMENT * m_y_human
+        velocity_now = velocity + BALL_ACCELERATION * (tilt + tilt_now) / 2 * lead
+        error_now = error - (velocity + velocity_now) / 2 * lead
+        ideal_now = self._ideal_tilt(error_now, velocity_now)
+        ideal = self._trust * ideal_then + (1.0 - self._trust) * ideal_now
+        lacking = (ideal - robot_tilt) / TILT_OF_MOMENT
+        if abs(lacking) < self.profile.tolerance:
             return 0.0
         strokes = max(round(abs(lacking) / KEYSTROKE), 1)
-        return float(np.copysign(min(strokes * KEYSTROKE, HUMAN_MOMENT_LIMIT), lacking))
+        return math.copysign(min(strokes * KEYSTROKE, HUMAN_MOMENT_LIMIT), lacking)
 
-    @staticmethod
-    def _towards(wanted: float, m_y_human: float) -> Key | None:
-        if wanted == m_y_human:
-            return None
-        if wanted == 0.0:
-            return Key.SPACE
-        return Key.LEFT if wanted > m_y_human else Key.RIGHT
+    def _ideal_tilt(self, error: float, velocity: float) -> float:
+        tilt = self.profile.stiffness * error - self.profile.damping * velocity
+        return min(max(tilt, -TILT_WANTED_MAX), TILT_WANTED_MAX)
+
+
+def _towards(wanted: float, m_y_human: float) -> Key | None:
+    """The key that brings M_yh nearer to what is wanted."""
+    if wanted == m_y_human:
+        return None
+    if wanted == 0.0:
+        return Key.SPACE
+    return Key.LEFT if wanted > m_y_human else Key.RIGHT

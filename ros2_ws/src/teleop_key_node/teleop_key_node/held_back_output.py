@@ -1,0 +1,42 @@
+"""Log lines that must not run across the screen."""
+
+import os
+import sys
+import tempfile
+
+
+class HeldBackOutput:
+    """Keeps what this process writes to a terminal on stdout and stderr, and says it when the screen is gone.
+
+    Works on file descriptors, because the ROS log is written by C. Output that goes to a file or a pipe is left alone.
+    """
+
+    def __init__(self) -> None:
+        self._saved: dict[int, int] = {}
+        self._kept = tempfile.TemporaryFile()  # noqa: SIM115 - it lives as long as the screen
+
+    def hold(self) -> None:
+        """Keep back from now on."""
+        for stream, fd in ((sys.stdout, 1), (sys.stderr, 2)):
+            if fd not in self._saved and os.isatty(fd):
+                stream.flush()
+                self._saved[fd] = os.dup(fd)
+                os.dup2(self._kept.fileno(), fd)
+
+    def release(self) -> None:
+        """Write out what was kept and let the rest through."""
+        for stream, fd in ((sys.stdout, 1), (sys.stderr, 2)):
+            if fd in self._saved:
+                stream.flush()
+                saved = self._saved.pop(fd)
+                os.dup2(saved, fd)
+                os.close(saved)
+        self._kept.seek(0)
+        text = self._kept.read()
+        self._kept.seek(0)
+        self._kept.truncate()
+        try:
+            while text:
+                text = text[os.write(2, text):]
+        except OSError:
+            pass  # the terminal is gone: nobody is left to read it

@@ -1,0 +1,42 @@
+"""What the agent tells of the lesson that decides whether keys count."""
+
+from rclpy.node import Node
+
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+
+
+class Lesson:
+    """Phase and episode, from /training/phase and /training/episode."""
+
+    def __init__(self, node: Node):
+        self._phases = Polled(node, contract.PHASE, qos_profile=contract.qos_latched())
+        self._episodes = Polled(node, contract.EPISODE, qos_profile=contract.qos_latched())
+        self.phase: str | None = None
+        """None: nobody teaches a robot."""
+        self.episode: int | None = None
+        self.restarts = 0
+        """How often the count of episodes has begun anew."""
+
+    @property
+    def keys_count(self) -> bool:
+        """Keys count while the robot is taught, and when no lesson is given at all."""
+        return self.phase in (None, 'teach')
+
+    def update(self) -> bool:
+        """Take what was published; whether a new episode or phase has begun."""
+        before = self.phase, self.episode
+        while (message := self._phases.take()) is not None:
+            self.phase = message.data
+        while (message := self._episodes.take()) is not None:
+            if self.episode is not None and message.data < self.episode:
+                self.restarts += 1
+            self.episode = message.data
+        return (self.phase, self.episode) != before
+
+    def forget_if_over(self) -> bool:
+        """Forget the phase when the agent is gone; whether that was so. Call now and then, not at every tick."""
+        if self.phase is None or self._phases.publisher_count() > 0:
+            return False
+        self.phase = None
+        return True

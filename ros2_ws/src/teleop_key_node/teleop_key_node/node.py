@@ -1,0 +1,162 @@
+"""Keyboard teleoperation: turns the keys on /human/keys into M_yh on /human/target_wrench (50 Hz).
+
+With a terminal it reads the keys there as well and shows the lesson: arrows or a/d tip the tray, space lets go,
+q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves the ball to the left of the picture.
+"""
+
+from geometry_msgs.msg import WrenchStamped
+from rclpy.duration import Duration
+from rclpy.node import Node
+
+from shared_control.human.keystrokes import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
+from shared_control_ros import contract
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.parameters import declare
+from shared_control_ros.runner import Stop, run
+from shared_control_ros.stamps import set_ns
+
+from .lesson import Lesson
+from .panel import Panel
+from .sources import KeySources
+from .terminal import NoTerminal, Terminal
+from .ticker import Ticker
+
+TICKS_PER_POLL = 5
+"""How often services are looked at."""
+
+
+class TeleopKeyNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('teleop_key_node')
+        keystroke = declare(
+            node, 'keystroke', KEYSTROKE, 'Change of M_yh at one press.', unit='N m', minimum=0.0, maximum=200.0)
+        self._moment_limit = declare(
+            node, 'moment_limit', HUMAN_MOMENT_LIMIT, 'Bound of |M_yh|.', unit='N m', minimum=0.1, maximum=200.0)
+        self._timeout = declare(
+            node, 'source_timeout', 0.5, 'A source of keys that pressed and is silent for longer: M_yh goes to zero.',
+            unit='s', minimum=0.1, maximum=10.0)
+        self._rate = declare(
+            node, 'rate', 50.0, 'How often M_yh is published.', unit='Hz', minimum=10.0, maximum=200.0)
+        self._screen = declare(
+            node, 'screen', 'auto', 'auto: read keys and show the lesson in the terminal, if there is one. off: serve '
+            '/human/keys only.', choices=('auto', 'off'))
+        self._frame_rate = declare(
+            node, 'frame_rate', 25.0, 'How often the screen is drawn.', unit='Hz', minimum=1.0, maximum=60.0)
+        self._characters = declare(
+            node, 'characters', 'auto', 'What the screen is drawn with; auto: as the locale has it.',
+            choices=('auto', 'unicode', 'ascii'))
+
+        self._keys = Polled(node, contract.KEYS, depth=50)
+        self._lesson = Lesson(node)
+        self._sources = KeySources(KeyMoment(keystroke, self._moment_limit), self._timeout)
+        self._wrench = WrenchStamped()
+        self._wrench.header.frame_id = contract.BASE_FRAME
+        self._publisher = node.create_publisher(
+            contract.HUMAN_WRENCH.msg_type, contract.HUMAN_WRENCH.name, contract.HUMAN_WRENCH.qos)
+        self._diagnostics = Diagnostics(node, 1.0 / self._rate)
+        self._ticker = Ticker(node, 1.0 / self._rate)
+        self._panel = self._open_panel()
+        self._background = Background(node)
+        self._ticks = 0
+
+    def _open_panel(self) -> Panel | None:
+        serves = f'serving {self._keys.topic_name} only'
+        if self._screen == 'off':
+            self.node.get_logger().info(f'screen is off: {serves}')
+            return None
+        try:
+            terminal = Terminal()
+        except NoTerminal as reason:
+            self.node.get_logger().info(f'no terminal ({reason}): {serves}')
+            return None
+        return Panel(self.node, terminal, self._rate, self._frame_rate, self._moment_limit, self._characters)
+
+    def run(self, stop: Stop) -> None:
+        """Turn keys into M_yh until told to stop."""
+        while not stop.requested:
+            now_ns = self._ticker.wait()
+            if self._panel is not None:
+                self._serve_panel(self._panel, now_ns)
+            self._follow_lesson()
+            self._hear_keys(now_ns)
+            self._publish(self._sources.m_y, now_ns)
+            self._diagnostics.tick()
+            if self._panel is not None:
+                self._panel.draw(self._sources, self._lesson)
+            self._ticks += 1
+            if self._ticks % TICKS_PER_POLL == 0:
+                self._background.poll()
+            if self._diagnostics.due():
+                self._report()
+
+    def _serve_panel(self, panel: Panel, now_ns: int) -> None:
+        if panel.terminal.suspend_requested:
+            self._sources.release()
+            self._publish(0.0, now_ns)
+            panel.terminal.suspend()
+            self._diagnostics.skip()
+        panel.read(now_ns)
+        if panel.requests.is_pending:
+            self._background.spin_once(0.0)
+        if panel.terminal.is_gone:
+            panel.close()
+            self._panel = None
+            self.node.get_logger().warning(f'the terminal is gone: serving {self._keys.topic_name} only')
+
+    def _follow_lesson(self) -> None:
+        """Every episode and phase starts without a moment of the human, and most phases stay so."""
+        if self._lesson.update():
+            self._sources.release()
+            self._sources.is_active = self._lesson.keys_count
+
+    def _hear_keys(self, now_ns: int) -> None:
+        while (joy := self._keys.take()) is not None:
+            source = joy.header.frame_id
+            try:
+                self._sources.hear(source, joy.buttons, now_ns)
+            except ValueError as error:
+                text = f'dropped a message of {source!r} on {self._keys.topic_name}: {error}'
+                self.node.get_logger().error(text, throttle_duration_sec=1.0)
+                self._tell(text)
+        for source in self._sources.drop_silent(now_ns):
+            text = (f'{source!r} fell silent on {self._keys.topic_name} for more than {self._timeout} s: '
+                    'M_yh is set to zero')
+            self.node.get_logger().warning(text, throttle_duration_sec=1.0)
+            self._tell(text)
+
+    def _tell(self, text: str) -> None:
+        if self._panel is not None:
+            self._panel.tell(text)
+
+    def _publish(self, m_y: float, now_ns: int) -> None:
+        set_ns(self._wrench.header.stamp, now_ns)
+        self._wrench.wrench.torque.y = m_y
+        self._publisher.publish(self._wrench)
+
+    def _report(self) -> None:
+        if self._lesson.forget_if_over():
+            self._sources.release()
+            self._sources.is_active = True
+        self._diagnostics.publish({}, m_y_human=self._sources.m_y)
+
+    def close(self) -> None:
+        """Publish zero and put the terminal back as it was."""
+        try:
+            self._publish(0.0, self.node.get_clock().now().nanoseconds)
+            self._publisher.wait_for_all_acked(Duration(nanoseconds=200_000_000))
+        finally:
+            if self._panel is not None:
+                self._panel.close()
+            self._background.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(TeleopKeyNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

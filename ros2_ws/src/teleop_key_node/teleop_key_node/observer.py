@@ -1,0 +1,120 @@
+"""What the screen shows of robot, ball and learning, taken from the topics when it is drawn."""
+
+import math
+import time
+
+import numpy as np
+from geometry_msgs.msg import WrenchStamped
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+
+from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.model import PandaModel, pitch
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+from shared_control_ros.stamps import to_ns
+
+from .scene import Scene
+
+SILENT_AFTER = 0.5
+"""A topic is silent when it brings nothing new for this long, s of the wall clock."""
+
+_NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""A screen that is slow or suspended asks nobody to send again."""
+
+
+class Observer:
+    """Keeps the newest of each topic, at the price of the frames that are drawn, not of the messages that pass."""
+
+    def __init__(self, node: Node):
+        self._log = node.get_logger()
+        self._model = PandaModel()
+        self._joint_states = Polled(node, contract.JOINT_STATES, qos_profile=_NEWEST)
+        self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
+        self._agent = _Moment(node, contract.AGENT_WRENCH)
+        self._applied = _Moment(node, contract.APPLIED_WRENCH)
+        latest = contract.qos_latched(1)
+        self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
+        self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
+        self._success = Polled(node, contract.SUCCESS, qos_profile=latest)
+        self._returns = Polled(node, contract.EPISODE_RETURN, qos_profile=contract.qos_latched())
+        self._stamp_ns = -1
+        self._moved_at = -math.inf
+        self._tray: tuple[np.ndarray, np.ndarray] | None = None
+
+    @property
+    def stamp_ns(self) -> int:
+        """Of the newest /joint_states, ns; -1 when there was none."""
+        return self._stamp_ns
+
+    def update(self, scene: Scene) -> None:
+        """Bring the scene up to date."""
+        now = time.monotonic()
+        joints = self._joint_states.take()
+        if joints is not None:
+            self._read_joints(joints, scene, now)
+        ball = self._ball.take()
+        if ball is not None and self._tray is not None:
+            self._read_ball(ball, scene)
+        silent = now - self._moved_at
+        scene.simulator_silent_for = silent if silent > SILENT_AFTER else None
+        scene.m_y_agent = self._agent.update(now)
+        scene.m_y_applied = self._applied.update(now)
+        scene.time_left = self._latest(self._time_left, scene.time_left)
+        scene.human_share = self._latest(self._share, scene.human_share)
+        scene.success = self._latest(self._success, scene.success)
+        while (message := self._returns.take()) is not None:
+            if math.isfinite(message.data):
+                scene.returns.append(message.data)
+
+    def _read_joints(self, joints: JointState, scene: Scene, now: float) -> None:
+        try:
+            q = np.array([joints.position[joints.name.index(name)] for name in JOINT_NAMES])
+        except (ValueError, IndexError):
+            self._drop(self._joint_states, f'joints {list(joints.name)}, expected {JOINT_NAMES}')
+            return
+        if not np.isfinite(q).all():
+            self._drop(self._joint_states, f'positions {list(q)}')
+            return
+        stamp_ns = to_ns(joints.header.stamp)
+        if stamp_ns != self._stamp_ns:  # a simulator that stands still repeats its last tick
+            self._stamp_ns, self._moved_at = stamp_ns, now
+        self._tray = self._model.tray_pose(q)
+        scene.pitch = pitch(self._tray[1])
+
+    def _read_ball(self, ball: Odometry, scene: Scene) -> None:
+        assert self._tray is not None
+        position = ball.pose.pose.position
+        in_base = np.array([position.x, position.y, position.z])
+        if ball.header.frame_id != contract.BASE_FRAME or not np.isfinite(in_base).all():
+            self._drop(self._ball, f'frame_id {ball.header.frame_id!r} (expected {contract.BASE_FRAME!r}), '
+                                   f'position {in_base}')
+            return
+        origin, rotation = self._tray
+        scene.ball_along, _, scene.ball_height = (rotation.T @ (in_base - origin)).tolist()
+
+    @staticmethod
+    def _latest(topic: Polled, before: float | None) -> float | None:
+        message = topic.take()
+        return before if message is None or not math.isfinite(message.data) else message.data
+
+    def _drop(self, topic: Polled, what: str) -> None:
+        self._log.error(f'not shown, a message on {topic.topic_name}: {what}', throttle_duration_sec=1.0)
+
+
+class _Moment:
+    """M_y of a wrench topic; None when it is silent."""
+
+    def __init__(self, node: Node, topic: contract.Topic):
+        self._topic = Polled(node, topic, qos_profile=_NEWEST)
+        self._m_y: float | None = None
+        self._heard_at = -math.inf
+
+    def update(self, now: float) -> float | None:
+        message: WrenchStamped | None = self._topic.take()
+        if message is not None:
+            m_y = message.wrench.torque.y
+            self._m_y, self._heard_at = (m_y if math.isfinite(m_y) else None), now
+        return self._m_y if now - self._heard_at <= SILENT_AFTER else None

@@ -1,0 +1,127 @@
+"""The terminal as a teacher's desk: its keys go to /human/keys, its screen shows the lesson."""
+
+import locale
+import os
+import time
+
+from rclpy.node import Node
+from sensor_msgs.msg import Joy
+
+from shared_control.human.keystrokes import Key
+from shared_control_ros import contract
+from shared_control_ros.stamps import set_ns
+
+from .keyboard import Keyboard, Stroke
+from .lesson import Lesson
+from .observer import Observer
+from .requests import Requests
+from .scene import Scene
+from .screen import render
+from .sources import KeySources
+from .terminal import Terminal
+
+SOURCE = 'terminal'
+"""The frame_id of the terminal's keys."""
+_KEYS = {Stroke.LEFT: Key.LEFT, Stroke.RIGHT: Key.RIGHT, Stroke.SPACE: Key.SPACE}
+_REPEAT_EVERY = 0.08
+"""The state of the keys is repeated after this, s."""
+_MESSAGE_FOR = 8.0
+"""How long a notice stays, s."""
+
+
+def speaks_unicode(characters: str) -> bool:
+    """Whether to draw with more than ASCII; ``auto`` asks the locale. The Linux console's font has no braille."""
+    if characters == 'auto':
+        return locale.getencoding().upper() in ('UTF-8', 'UTF8') and os.environ.get('TERM') != 'linux'
+    return characters == 'unicode'
+
+
+class Panel:
+    """Reads the terminal and draws on it.
+
+    Args:
+        rate: of the ticks, Hz.
+        frame_rate: of the screen, Hz.
+        moment_limit: bound of |M_yh|, N m.
+        characters: ``auto``, ``unicode`` or ``ascii``.
+    """
+
+    def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, moment_limit: float,
+                 characters: str):
+        self.terminal = terminal
+        self._keyboard = Keyboard()
+        self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
+        self._joy = Joy(buttons=[0] * len(Key))
+        self._joy.header.frame_id = SOURCE
+        self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
+        self._ticks = 0
+        self.requests = Requests(node, self.tell)
+        self._observer = Observer(node)
+        self._scene = Scene(moment_limit=moment_limit)
+        self._restarts = 0
+        self._paused_stamp_ns = 0
+        self._frame_period = 1.0 / frame_rate
+        self._next_frame = 0.0
+        self._unicode = speaks_unicode(characters)
+        self._message_until = 0.0
+
+    def tell(self, text: str) -> None:
+        """Show the person a notice for some seconds."""
+        self._scene.message = f' {text}' if text else ''
+        self._message_until = time.monotonic() + _MESSAGE_FOR
+
+    def read(self, now_ns: int) -> None:
+        """Publish what was typed, and every 0.08 s that the terminal is still there."""
+        strokes = self._keyboard.strokes(self.terminal.read())
+        if not self.terminal.is_entered:
+            return  # in the background: as good as gone
+        set_ns(self._joy.header.stamp, now_ns)
+        for stroke in strokes:
+            self._obey(stroke)
+        self._ticks += 1
+        if strokes or self._ticks % self._repeat_ticks == 0:
+            self._keys.publish(self._joy)
+        self.requests.expire()
+
+    def _obey(self, stroke: Stroke) -> None:
+        if stroke in _KEYS:
+            self._joy.buttons[_KEYS[stroke]] = 1
+            self._keys.publish(self._joy)
+            self._joy.buttons[_KEYS[stroke]] = 0
+            self._keys.publish(self._joy)
+        elif stroke is Stroke.FINISH:
+            self.requests.finish()
+        elif stroke is Stroke.PAUSE:
+            self._paused_stamp_ns = self._observer.stamp_ns
+            self.requests.toggle_pause()
+        else:
+            self.terminal.redraw()
+
+    def draw(self, sources: KeySources, lesson: Lesson) -> None:
+        """Draw a frame if one is due."""
+        now = time.monotonic()
+        if now < self._next_frame or not self.terminal.is_entered:
+            return
+        self._next_frame = max(self._next_frame + self._frame_period, now)
+        scene = self._scene
+        if lesson.restarts != self._restarts:
+            self._restarts = lesson.restarts
+            scene.returns.clear()
+        self._observer.update(scene)
+        self._notice_resumption()
+        scene.phase, scene.episode = lesson.phase, lesson.episode
+        scene.m_y_human = sources.m_y
+        scene.hand = 'you' if sources.last_pressed in ('', SOURCE) else sources.last_pressed
+        scene.paused = self.requests.paused
+        if now > self._message_until:
+            scene.message = ''
+        self.terminal.paint(render(scene, *self.terminal.size, self._unicode))
+
+    def _notice_resumption(self) -> None:
+        """Somebody else may have let the simulator go on."""
+        if self.requests.paused and self._observer.stamp_ns > self._paused_stamp_ns + 500_000_000:
+            self.requests.paused = False
+
+    def close(self) -> None:
+        """Put the terminal back as it was."""
+        self.terminal.close()

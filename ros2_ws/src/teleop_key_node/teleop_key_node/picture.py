@@ -1,0 +1,63 @@
+"""Tray and ball, seen from the side: base +x is on the left, because the left key is to move the ball there."""
+
+import math
+
+import numpy as np
+
+from .canvas import to_lines
+from .scene import Scene
+
+TRAY_HALF_LENGTH = 0.20
+"""m"""
+TRAY_SURFACE = 0.006
+"""Above the tray's frame, m."""
+WALL_HEIGHT = 0.010
+"""Above the surface, m."""
+BALL_RADIUS = 0.015
+"""m"""
+STEEPER = 3
+"""How many times steeper the tilt is drawn."""
+
+_MAX_COLUMNS, _MAX_ROWS = 120, 30
+
+
+def has_fallen(scene: Scene) -> bool:
+    """Whether the ball is no longer on the tray."""
+    return (scene.ball_along is not None and scene.ball_height is not None
+            and (scene.ball_height < 0.0 or abs(scene.ball_along) > TRAY_HALF_LENGTH + BALL_RADIUS))
+
+
+def draw(scene: Scene, width: int, height: int, unicode: bool) -> list[str]:
+    """The picture in ``height`` lines of ``width`` characters, centred."""
+    columns, rows = min(width, _MAX_COLUMNS), min(height, _MAX_ROWS)
+    above = (height - rows) // 2
+    lines = [''] * rows if scene.pitch is None else to_lines(_dots(scene, scene.pitch, 2 * columns, 4 * rows), unicode)
+    return [''] * above + [line.center(width) for line in lines] + [''] * (height - rows - above)
+
+
+def _dots(scene: Scene, pitch: float, width: int, height: int) -> np.ndarray:
+    """The dots that are set, (height, width). Lengths are in dots, as wide as they are high in most fonts."""
+    scale = 0.44 * width / TRAY_HALF_LENGTH
+    half, radius = TRAY_HALF_LENGTH * scale, BALL_RADIUS * scale
+    middle_x, middle_y = width / 2 - 0.5, math.floor(0.58 * height)
+    # The raised end, with the ball on it, stays in the picture.
+    steepest = math.asin(min(max((middle_y - 2 * radius) / half, 0.05), 0.7))
+    angle = min(max(STEEPER * pitch, -steepest), steepest)
+    cos, sin = math.cos(angle), math.sin(angle)
+
+    # Of every dot: how far left of and above the middle; along the tray (left is positive) and above its surface.
+    left = np.float32(middle_x) - np.arange(width, dtype=np.float32)
+    up = np.float32(middle_y) - np.arange(height, dtype=np.float32)[:, None]
+    along, above = left * cos - up * sin, left * sin + up * cos
+
+    reach = np.abs(along)
+    dots = (above <= 0.5) & (above > -1.5) & (reach <= half)
+    dots |= (reach <= half) & (reach > half - 2.0) & (above > -1.0) & (above <= WALL_HEIGHT * scale)
+    # The tray turns about its middle, where the ball should be.
+    dots |= (up < -3.0) & (up >= -9.0) & (np.abs(left) <= -3.0 - up)
+    if scene.ball_along is not None and scene.ball_height is not None:
+        ball_along, ball_above = scene.ball_along * scale, (scene.ball_height - TRAY_SURFACE) * scale
+        ball_left, ball_up = ball_along * cos + ball_above * sin, ball_above * cos - ball_along * sin
+        ball_up = max(ball_up, middle_y - height + radius)  # a fallen ball lies at the bottom of the picture
+        dots |= (left - ball_left) ** 2 + (up - ball_up) ** 2 <= radius ** 2
+    return dots

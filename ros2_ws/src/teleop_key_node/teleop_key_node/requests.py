@@ -1,0 +1,74 @@
+"""What a person asks of the other nodes: the lesson is over, pause, go on."""
+
+import time
+from collections.abc import Callable
+
+from rclpy.client import Client
+from rclpy.node import Node
+from rclpy.task import Future
+from std_srvs.srv import SetBool, Trigger
+
+from shared_control_ros import contract
+
+ANSWER_WITHIN = 3.0
+"""s"""
+
+
+class Requests:
+    """Calls services without waiting for them.
+
+    Args:
+        tell: takes a line for the person.
+    """
+
+    def __init__(self, node: Node, tell: Callable[[str], None]):
+        self._tell = tell
+        self._finish = node.create_client(Trigger, contract.FINISH_SERVICE)
+        self._pause = node.create_client(SetBool, contract.PAUSE_SERVICE)
+        self._pending: dict[Future, tuple[Client, float]] = {}
+        self.paused = False
+        """Whether the simulator has been paused from here."""
+
+    @property
+    def is_pending(self) -> bool:
+        """Whether an answer is due: let the node's executor look for it."""
+        return bool(self._pending)
+
+    def finish(self) -> None:
+        """It has learned it: end the lesson."""
+        def answered(response: Trigger.Response) -> None:
+            self._tell(response.message or ('The lesson ends.' if response.success else 'The learner refused to end.'))
+        self._call(self._finish, Trigger.Request(), answered, 'is the learner (ppo_agent_node) running?')
+
+    def toggle_pause(self) -> None:
+        """Pause the simulator, or go on."""
+        pause = not self.paused
+
+        def answered(response: SetBool.Response) -> None:
+            if response.success:
+                self.paused = pause
+            self._tell('' if response.success else f'Could not {"pause" if pause else "go on"}: {response.message}')
+        self._call(self._pause, SetBool.Request(data=pause), answered, 'this robot cannot be paused.')
+
+    def expire(self) -> None:
+        """Give up what was not answered in time."""
+        now = time.monotonic()
+        for future, (client, deadline) in list(self._pending.items()):
+            if now > deadline:
+                del self._pending[future]
+                client.remove_pending_request(future)
+                self._tell(f'No answer from {client.service_name} within {ANSWER_WITHIN:.0f} s.')
+
+    def _call(self, client: Client, request: object, answered: Callable, hint: str) -> None:
+        if any(pending is client for pending, _ in self._pending.values()):
+            return
+        if not client.service_is_ready():
+            self._tell(f'Nobody serves {client.service_name}: {hint}')
+            return
+
+        def done(future: Future) -> None:
+            if self._pending.pop(future, None) is not None:
+                answered(future.result())
+        future = client.call_async(request)
+        self._pending[future] = client, time.monotonic() + ANSWER_WITHIN
+        future.add_done_callback(done)

@@ -1,0 +1,41 @@
+"""What the teaching screen shows."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Scene:
+    """One moment of the lesson; None is what nobody has said (yet)."""
+
+    pitch: float | None = None
+    """Of the tray, rad; positive: the left of the picture (base +x) is down."""
+    ball_along: float | None = None
+    """The ball's offset from the middle of the tray along its x axis, m; positive: left in the picture."""
+    ball_height: float | None = None
+    """Of the ball's centre above the tray's frame, m."""
+    m_y_human: float = 0.0
+    """N m"""
+    m_y_agent: float | None = None
+    """N m"""
+    m_y_applied: float | None = None
+    """The sum as the controller applies it, N m."""
+    moment_limit: float = 10.0
+    """Bound of |M_yh|, N m; the bars reach to twice that."""
+    hand: str = 'you'
+    """Whose keys count: ``you``, or another source's name."""
+    human_share: float | None = None
+    """0..1"""
+    phase: str | None = None
+    """``teach``, ``learn``, ``test``, ``wait``, ``done``; None: nobody teaches a robot."""
+    episode: int | None = None
+    time_left: float | None = None
+    """Of the episode, s."""
+    returns: list[float] = field(default_factory=list)
+    """Of the episodes so far."""
+    success: float | None = None
+    """Of the last test, 0..1."""
+    paused: bool = False
+    simulator_silent_for: float | None = None
+    """How long the simulator has said nothing, s; None: it runs."""
+    message: str = ''
+    """The latest notice to the person."""

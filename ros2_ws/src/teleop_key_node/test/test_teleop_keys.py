@@ -1,0 +1,66 @@
+"""Bytes to strokes, and states of several sources to one moment."""
+
+import pytest
+
+from shared_control.human.keystrokes import KeyMoment
+from teleop_key_node.keyboard import Keyboard, Stroke
+from teleop_key_node.sources import KeySources
+
+SECOND = 1_000_000_000
+
+
+@pytest.mark.parametrize(('data', 'strokes'), [
+    (b'\x1b[D\x1b[C', [Stroke.LEFT, Stroke.RIGHT]),
+    (b'\x1bOD', [Stroke.LEFT]),
+    (b'\x1b[1;5C', [Stroke.RIGHT]),
+    (b'aAdD ', [Stroke.LEFT, Stroke.LEFT, Stroke.RIGHT, Stroke.RIGHT, Stroke.SPACE]),
+    (b'qp\x0c', [Stroke.FINISH, Stroke.PAUSE, Stroke.REDRAW]),
+    (b'\x1b[A\x1b[3~xyz\xc3\xa4\x1b[200~', []),
+    (b'\x1ba', [Stroke.LEFT]),
+])
+def test_strokes(data, strokes):
+    assert Keyboard().strokes(data) == strokes
+    keyboard = Keyboard()
+    assert [stroke for i in range(len(data)) for stroke in keyboard.strokes(data[i:i + 1])] == strokes
+
+
+def test_a_silent_source_is_forgotten_and_others_stay():
+    sources = KeySources(KeyMoment(), timeout=0.5)
+    sources.hear('a', [1, 0, 0], 0)
+    sources.hear('b', [0, 0, 0], SECOND)
+    assert sources.drop_silent(SECOND) == ['a']
+    assert sources.m_y == 0.0
+    sources.hear('b', [1, 0, 0], SECOND)
+    sources.hear('c', [0, 0, 0], SECOND)
+    sources.hear('b', [1, 0, 0], 2 * SECOND)
+    assert sources.drop_silent(2 * SECOND) == [], 'c never pressed'
+    assert sources.m_y == 5.0
+
+
+def test_whoever_left_before_the_moment_was_zero_takes_nothing_away():
+    sources = KeySources(KeyMoment(), timeout=0.5)
+    sources.hear('page', [1, 0, 0], 0)
+    sources.hear('terminal', [0, 0, 1], 0)
+    sources.hear('terminal', [0, 1, 0], SECOND // 2)
+    sources.hear('terminal', [0, 1, 0], SECOND)
+    assert sources.drop_silent(SECOND) == []
+    assert sources.m_y == -5.0
+
+
+def test_a_clock_that_jumps_back_makes_every_source_silent():
+    sources = KeySources(KeyMoment(), timeout=0.5)
+    sources.hear('a', [1, 0, 0], 9 * SECOND)
+    assert sources.drop_silent(SECOND) == ['a']
+    assert sources.m_y == 0.0
+
+
+def test_a_key_held_over_the_start_of_an_episode_is_no_press():
+    sources = KeySources(KeyMoment(), timeout=0.5)
+    sources.is_active = False
+    sources.hear('a', [1, 0, 0], 0)
+    sources.is_active = True
+    sources.hear('a', [1, 0, 0], 0)
+    assert sources.m_y == 0.0
+    sources.hear('a', [0, 0, 0], 0)
+    sources.hear('a', [1, 0, 0], 0)
+    assert sources.m_y == 5.0

@@ -1,0 +1,117 @@
+"""The running node over DDS, without a terminal."""
+
+import signal
+import time
+
+import pytest
+from rosgraph_msgs.msg import Clock
+
+from shared_control_ros import contract
+from shared_control_ros.stamps import set_ns
+
+
+def test_presses_of_several_sources_add_up(graph, start):
+    process = start('source_timeout:=10.0')
+    graph.press(1, 0, 0)
+    graph.expect(5.0)
+    for _ in range(5):
+        graph.press(1, 0, 0)  # still held: no press
+    graph.hold(5.0, 0.1)
+    graph.press(1, 0, 0, source='page')
+    graph.expect(10.0)
+    for source in ('page', 'test'):
+        graph.press(0, 0, 0, source=source)
+        graph.press(1, 0, 0, source=source)
+    graph.hold(10.0, 0.1)  # the limit
+    graph.press(0, 1, 0)
+    graph.expect(5.0)
+    graph.press(0, 0, 1)
+    graph.expect(0.0)
+
+    received, began = graph.received, time.monotonic()
+    graph.hold(0.0, 1.0)
+    rate = (graph.received - received) / (time.monotonic() - began)
+    assert 25.0 < rate < 60.0, 'zero is published, too'
+    assert process.stop() == 0
+    assert 'no terminal (/dev/tty' in process.output()
+
+
+def test_bad_messages_are_dropped_and_named(graph, start):
+    process = start('screen:=off', 'source_timeout:=10.0')
+    graph.press(1, 0, 0)
+    graph.expect(5.0)
+    graph.press(1, 0, source='short')
+    time.sleep(1.1)  # errors are throttled
+    graph.press(0, 7, 0, source='odd')
+    graph.press(0, 1, 0)
+    graph.expect(0.0)
+    process.stop()
+    output = process.output()
+    assert "'short' on /human/keys: expected 3 buttons (left, right, space), got 2" in output
+    assert "'odd' on /human/keys: expected buttons of 0 or 1 (left, right, space), got [0, 7, 0]" in output
+
+
+def test_a_silent_source_takes_its_moment_with_it(graph, start):
+    start('screen:=off')
+    graph.press(0, 1, 0)
+    graph.expect(-5.0)
+    for _ in range(7):
+        time.sleep(0.1)
+        graph.press(0, 0, 0)  # repeats its state: it is there
+    assert graph.listen() == -5.0
+    began = time.monotonic()
+    graph.expect(0.0)
+    assert time.monotonic() - began < 1.5
+
+
+def test_keys_rest_unless_the_robot_is_taught(graph, start):
+    start('screen:=off', 'source_timeout:=10.0')
+    graph.begin('teach', episode=1)
+    time.sleep(0.2)
+    graph.press(1, 0, 0)
+    graph.expect(5.0)
+    graph.begin('learn')
+    graph.expect(0.0)
+    graph.press(0, 0, 0)
+    graph.press(1, 0, 0)
+    graph.hold(0.0, 0.15)
+    graph.begin('teach', episode=2)
+    graph.press(1, 0, 0)  # held since before: no press
+    graph.hold(0.0, 0.15)
+    graph.press(0, 1, 0)
+    graph.expect(-5.0)
+    graph.begin('teach', episode=3)
+    graph.expect(0.0)
+
+
+def test_zero_is_the_last_that_is_published(graph, start):
+    process = start('screen:=off', 'source_timeout:=10.0')
+    graph.press(1, 0, 0)
+    graph.expect(5.0)
+    assert process.stop(signal.SIGTERM) == 0
+    graph.expect(0.0)
+
+
+def test_stamps_follow_simulation_time(graph, start):
+    clock = graph.publisher(contract.CLOCK)
+    start('screen:=off', 'use_sim_time:=true')
+    message = Clock()
+
+    def ticked() -> bool:
+        clock.publish(message)  # again and again: the node may not hear yet
+        graph.listen()
+        return graph.stamps[-1] == now_ns
+    for now_ns in range(10**18, 10**18 + 200_000_000, 20_000_000):
+        set_ns(message.clock, now_ns)
+        graph.until(ticked, 'the tick of the clock')
+
+
+@pytest.mark.parametrize(('parameter', 'said'), [
+    ('rate:=0.0', "parameter 'rate' is out of range (10.0 to 200.0)"),
+    ('screen:=always', "parameter 'screen' has no choice 'always'"),
+])
+def test_a_wrong_parameter_is_named(parameter, said, run_to_its_end):
+    result = run_to_its_end(parameter)
+    assert result.returncode == 2
+    assert said in result.stderr
+    assert 'Traceback' not in result.stderr

@@ -1,0 +1,106 @@
+"""The screen as a function of the scene."""
+
+from dataclasses import replace
+
+import pytest
+
+from teleop_key_node.picture import draw
+from teleop_key_node.scene import Scene
+from teleop_key_node.screen import render
+
+SCENE = Scene(
+    pitch=0.04, ball_along=0.10, ball_height=0.021, m_y_human=5.0, m_y_agent=-2.0, m_y_applied=3.0, human_share=0.25,
+    phase='teach', episode=3, time_left=9.4, returns=[-5000.0, -200.0, 40.0], success=0.95)
+
+
+def line_with(lines: list[str], text: str) -> str:
+    found = [line for line in lines if text in line]
+    assert len(found) == 1, '\n'.join(lines)
+    return found[0]
+
+
+def columns_of_dots(scene: Scene) -> list[list[int]]:
+    """Of each line of the picture, the columns that are not blank."""
+    return [[i for i, cell in enumerate(line) if cell != ' '] for line in draw(scene, 80, 10, True)]
+
+
+def test_a_ball_at_plus_x_is_left_in_the_picture():
+    without = columns_of_dots(replace(SCENE, pitch=0.0, ball_along=None))
+    for along, is_left in ((0.15, True), (-0.15, False)):
+        ball = columns_of_dots(replace(SCENE, pitch=0.0, ball_along=along))
+        added = [column for row, empty in zip(ball, without, strict=True) for column in set(row) - set(empty)]
+        assert added
+        assert all((column < 40) == is_left for column in added)
+    assert 'ball 10.0 cm left of the middle' in '\n'.join(render(SCENE, 80, 24))
+
+
+def test_a_positive_pitch_tips_the_left_side_down():
+    for pitch, lower in ((0.04, 'left'), (-0.04, 'right')):
+        rows = columns_of_dots(replace(SCENE, pitch=pitch, ball_along=None))
+        height = {side: max(row for row, columns in enumerate(rows) if columns and end(columns))
+                  for side, end in (('left', lambda c: c[0] < 8), ('right', lambda c: c[-1] > 71))}
+        assert max(height, key=lambda side: height[side]) == lower
+        assert f'tilt 2.3 deg, {lower} side down (drawn 3 x)' in '\n'.join(render(replace(SCENE, pitch=pitch), 80, 24))
+
+
+def test_bars_point_to_where_the_ball_is_pushed():
+    lines = render(SCENE, 80, 24)
+    human, agent, total = (line_with(lines, symbol) for symbol in ('M_yh', 'M_yai', 'M_y '))
+    axis = human.index('│')
+    assert axis == 40 == agent.index('│') == total.index('│')
+    assert human[axis - 1] == '█'
+    assert human[axis + 1] == ' '
+    assert '+5.0 N m' in human
+    assert agent[axis + 1] == '█'
+    assert agent[axis - 1] == ' '
+    assert '-2.0 N m' in agent
+    assert human.count('█') > total.count('█') > agent.count('█')
+    assert '-- N m' in line_with(render(replace(SCENE, m_y_agent=None), 80, 24), 'M_yai')
+
+
+def test_bars_keep_to_their_place_beyond_the_scale():
+    lines = render(replace(SCENE, m_y_applied=-105.0), 80, 24)
+    assert '-105.0 N m' in line_with(lines, 'M_y ')
+    assert len(line_with(lines, 'M_y ')) == 80
+
+
+@pytest.mark.parametrize(('changes', 'said'), [
+    ({}, '[ TEACH ]'),
+    ({'phase': 'learn'}, '[ LEARN ]'),
+    ({'phase': 'test'}, 'Hands off'),
+    ({'phase': 'wait'}, '[ WAIT ]'),
+    ({'phase': 'done'}, '[ DONE ]'),
+    ({'phase': 'dance'}, '[ DANCE ]'),
+    ({'phase': None}, '[ FREE ]'),
+    ({'paused': True, 'simulator_silent_for': 9.0}, 'Press p to go on'),
+    ({'simulator_silent_for': 3.2}, '[ WAITING FOR THE SIMULATOR ]  No /joint_states for 3 s.'),
+    ({'simulator_silent_for': float('inf'), 'phase': None}, 'No /joint_states yet.'),
+    ({'simulator_silent_for': 3.2, 'phase': 'learn'}, '[ LEARN ]'),
+    ({'ball_height': -0.1}, 'THE BALL HAS FALLEN'),
+    ({'ball_along': 0.3}, 'THE BALL HAS FALLEN'),
+    ({'hand': 'tutor'}, 'human share'),
+    ({}, 'your share     ██████████░'),
+    ({}, '25 %'),
+    ({}, '▁██  last 40, best 40   last test 95 %'),
+    ({}, 'episode 3   time left  9.4 s'),
+    ({'message': ' hello'}, ' hello'),
+])
+def test_what_is_said(changes, said):
+    assert said in '\n'.join(render(replace(SCENE, **changes), 80, 24))
+
+
+@pytest.mark.parametrize('unicode', [True, False])
+@pytest.mark.parametrize(('width', 'height'), [(80, 24), (60, 16), (40, 10), (20, 5), (1, 1), (200, 60), (79, 200)])
+def test_any_window_is_filled_and_not_overrun(width, height, unicode):
+    for scene in (SCENE, Scene(), replace(SCENE, pitch=-0.5, ball_height=-3.0, message='x' * 300)):
+        lines = render(scene, width, height, unicode)
+        assert len(lines) <= height
+        assert all(len(line) == width for line in lines)
+        assert unicode or '\n'.join(lines).isascii()
+
+
+def test_a_small_window_keeps_what_matters():
+    text = '\n'.join(render(SCENE, 60, 16))
+    assert all(part in text for part in ('[ TEACH ]', 'M_yh', 'M_yai', 'tilt', 'space', 'episode 3'))
+    text = '\n'.join(render(SCENE, 40, 10))
+    assert all(part in text for part in ('[ TEACH ]', 'M_yh', 'space'))

@@ -1,0 +1,147 @@
+"""The running node in a real terminal (a pty): typed keys, the screen, and the terminal afterwards."""
+
+import os
+import signal
+import termios
+import time
+
+import pytest
+from nav_msgs.msg import Odometry
+from rclpy.executors import SingleThreadedExecutor
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool, Trigger
+
+from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control_ros import contract
+
+LEFT, RIGHT = b'\x1b[D', b'\x1b[C'
+ENTER, LEAVE = '\x1b[?1049h', '\x1b[?1049l'
+
+
+def test_typed_keys_reach_the_topics(graph, start_in_terminal):
+    terminal = start_in_terminal()
+    for keys, m_y in ((LEFT, 5.0), (b'a', 10.0), (RIGHT, 5.0), (b'd', 0.0), (b'\x1bOC', -5.0), (b' ', 0.0),
+                      (LEFT + LEFT, 10.0)):
+        terminal.type(keys)
+        graph.expect(m_y)
+    graph.hold(10.0, 1.0)  # the terminal repeats its state: it is still there
+    terminal.expect('+10.0 N m')
+
+    states = []
+    while (joy := graph.joys.take()) is not None:
+        assert joy.header.frame_id == 'terminal'
+        states.append(tuple(joy.buttons))
+    presses = [state for state in states if any(state)]
+    left, right, space = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+    assert presses == [left, left, right, right, right, space, left, left]
+    assert all(states[i + 1] == (0, 0, 0) for i, state in enumerate(states) if any(state))
+    assert len(states) - 2 * len(presses) >= 10, 'the state is repeated at 10 Hz'
+
+    terminal.type(b'\x03')
+    assert terminal.popen.wait(5.0) == 0
+    graph.expect(0.0)
+    assert terminal.modes == terminal.modes_before
+
+
+@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
+def test_the_terminal_is_restored(graph, start_in_terminal, number):
+    terminal = start_in_terminal()
+    terminal.expect('WAITING FOR THE SIMULATOR')
+    assert not terminal.modes[3] & termios.ECHO
+    assert terminal.modes[3] & termios.ISIG, 'Ctrl-C works'
+    assert terminal.stop(number) == 0
+    assert terminal.modes == terminal.modes_before
+    terminal.expect(LEAVE)
+    screen = terminal.shown.partition(ENTER)[2].partition(LEAVE)[0]
+    assert screen.rindex('\x1b[?25h') > screen.rindex('\x1b[?25l'), 'the cursor is back'
+    assert '[INFO]' not in screen, 'log lines wait until the screen is gone'
+
+
+def test_suspended_the_person_lets_go(graph, start_in_terminal):
+    terminal = start_in_terminal()
+    terminal.type(LEFT)
+    graph.expect(5.0)
+    before = len(terminal.shown)
+    terminal.type(b'\x1a')
+    terminal.expect(LEAVE, after=before)
+    graph.expect(0.0)
+    # Alone in its session, the process cannot stay stopped: it comes back at once.
+    terminal.expect(ENTER, after=terminal.shown.rindex(LEAVE))
+    terminal.type(RIGHT)
+    graph.expect(-5.0)
+
+
+def test_the_screen_shows_the_lesson(graph, start_in_terminal):
+    terminal = start_in_terminal('characters:=ascii')
+    terminal.expect('[ WAITING FOR THE SIMULATOR ]')
+    joints = JointState(name=list(reversed(JOINT_NAMES)), position=list(reversed(Q_REFERENCE)))
+    ball = Odometry()
+    ball.header.frame_id = 'panda_link0'
+    ball.pose.pose.position.x, ball.pose.pose.position.z = -0.385, 0.93
+    joint_publisher, ball_publisher = graph.publisher(contract.JOINT_STATES), graph.publisher(contract.BALL)
+    graph.begin('teach', episode=4)
+
+    def shown() -> bool:
+        joints.header.stamp.nanosec += 1
+        joint_publisher.publish(joints)
+        ball_publisher.publish(ball)
+        return 'cm left of the middle' in terminal.shown
+    graph.until(shown, 'the ball')
+    terminal.expect('tilt 1.0 deg, left side down')
+    terminal.expect('[ TEACH ]')
+    terminal.expect('episode 4')
+    assert terminal.shown.isascii()
+
+    # A resize is seen at the next frame.
+    before = len(terminal.shown)
+    termios.tcsetwinsize(terminal.master, (16, 60))
+    terminal.expect('\x1b[2J', after=before)
+    terminal.expect('\x1b[16;1H', after=before)
+    assert '\x1b[17;1H' not in terminal.shown[terminal.shown.rindex('\x1b[2J'):]
+
+
+def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
+    terminal = start_in_terminal()
+    terminal.type(b'q')
+    terminal.expect('Nobody serves /ppo_agent_node/finish')
+    asked = []
+
+    def on_finish(_, response):
+        asked.append('finish')
+        response.success, response.message = True, 'One more test.'
+        return response
+
+    def on_pause(request, response):
+        asked.append(request.data)
+        response.success = True
+        return response
+    graph.node.create_service(Trigger, contract.FINISH_SERVICE, on_finish)
+    graph.node.create_service(SetBool, contract.PAUSE_SERVICE, on_pause)
+    executor = SingleThreadedExecutor(context=graph.context)
+    executor.add_node(graph.node)
+
+    def ask(key: bytes, count: int) -> None:
+        deadline = time.monotonic() + 5.0
+        while len(asked) < count and time.monotonic() < deadline:
+            terminal.type(key)
+            for _ in range(30):
+                executor.spin_once(timeout_sec=0.01)
+    ask(b'q', 1)
+    terminal.expect('One more test.')
+    ask(b'p', 2)
+    terminal.expect('[ PAUSED ]')
+    ask(b'p', 3)
+    assert asked == ['finish', True, False]
+    executor.shutdown()
+
+
+def test_continued_the_terminal_is_set_up_anew(graph, start_in_terminal):
+    terminal = start_in_terminal()
+    terminal.expect(ENTER)
+    terminal.type(LEFT)
+    graph.expect(5.0)
+    os.kill(terminal.popen.pid, signal.SIGCONT)  # a shell may have changed the modes meanwhile
+    before = len(terminal.shown)
+    terminal.expect(ENTER, after=before - 1)
+    assert not terminal.modes[3] & termios.ECHO
