@@ -1,9 +1,63 @@
-"""What comes after the teaching: the test of the policy alone, the report, a word to the person."""
+"""What comes after the teaching: the test of the policy alone, and a word to the person."""
 
 import json
+import sys
 
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.local_plant import LocalPlant
+from shared_control.files import write_atomically
 from shared_control.learning.evaluate import evaluate, test_settings
+from shared_control.learning.hooks import Hooks
 from shared_control.learning.policy_file import load_policy, read_description
+from shared_control.learning.record import EpisodeRecord
+from shared_control.session.final_test import save_test
 from shared_control.session.folder import SessionFolder
+from shared_control.session.summary import Summary
+
+
+class _Progress(Hooks):
+    """A bar on a terminal."""
+
+    def __init__(self, episodes: int):
+        self._episodes = episodes
+
+    def episode_tested(self, record: EpisodeRecord) -> None:
+        if sys.stdout.isatty():
+            bar = '#' * record.episode + '.' * (self._episodes - record.episode)
+            print(f'\rtesting the robot alone [{bar}]', end='' if record.episode < self._episodes else '\n', flush=True)
+
+
+def test_policy(folder: SessionFolder, episodes: int) -> None:
+    """Test the session's policy alone, in this process, which equals the graph (tests/test_parity.py)."""
+    learner = load_policy(folder.policy)
+    env = BalanceEnv(LocalPlant(moment_limit=learner.preset.task.moment_limit), test_settings(learner.preset.task))
+    try:
+        save_test(evaluate(learner.act, env, episodes, hooks=_Progress(episodes)), folder.test)
+    finally:
+        env.close()
+
+
+def describe_policy(folder: SessionFolder) -> None:
+    """Put the description that the policy carries in its header beside it, to be read."""
+    if folder.policy.exists():
+        text = json.dumps(read_description(folder.policy), indent=2) + '\n'
+        write_atomically(folder.policy.with_suffix('.json'), text.encode())
+
+
+def tell_summary(folder: SessionFolder, summary: Summary) -> None:
+    """Print what came of the session."""
+    print()
+    if summary.simulated_tutor:
+        print('The tutor of this session was simulated.')
+    print(f'episodes taught    {summary.episodes_taught}')
+    print(f'key presses        {summary.key_presses}')
+    if summary.autonomous_success is not None:
+        print(f'robot alone        {summary.autonomous_success} of {summary.autonomous_episodes} randomised episodes')
+    if summary.real_time_factor is not None and summary.tick_ms is not None:
+        print(f'control loop       {summary.control_rate_hz} Hz, real-time factor {summary.real_time_factor}, '
+              f'tick p50 {summary.tick_ms["p50"]} ms, p99 {summary.tick_ms["p99"]} ms')
+    for finding in summary.bag_checks or []:
+        print(f'bag                {finding}')
+    print(f'picture            {folder.picture}')
+    print(f'report             {folder.report}')
+    print(f'everything         {folder.path}')

@@ -11,10 +11,11 @@ from typing import Any
 from shared_control.human.profiles import PROFILES
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.session.folder import SessionFolder
+from shared_control.session.report import write_report
 from session_recorder_node.recovery import recover
 
 from . import parameters as ros_parameters
-from .aftermath import report, show, test
+from .aftermath import describe_policy, tell_summary, test_policy
 from .node_process import NodeProcess
 from .progress import EpisodePrinter
 from .supervisor import SessionError, Supervisor
@@ -52,17 +53,18 @@ def run(args: argparse.Namespace) -> int:
     if settings['tutor'] == 'keyboard' and not _has_terminal():
         raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
     shows_screen = _has_terminal() and not args.no_screen
-    parameters = _parameters(settings, folder, args.resume is not None, shows_screen)
+    parameters = _parameters(settings, folder, shows_screen)
     ros_parameters.save(parameters, folder.parameters)
     folder.settings.write_text(json.dumps(settings, indent=2) + '\n')
 
     print(f'Session in {folder.path}: {settings["preset"]}, tutor: {settings["tutor"]}.', flush=True)
     finished, restarts = _teach(settings, folder, shows_screen)
-    recover(folder.bag)
+    if folder.bag.exists():
+        recover(folder.bag)
+    describe_policy(folder)
     if finished and settings['test_episodes']:
-        test(folder, settings['test_episodes'])
-    report(folder, restarts)
-    show(folder)
+        test_policy(folder, settings['test_episodes'])
+    tell_summary(folder, write_report(folder, restarts))
     if not finished:
         print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}')
     return 0 if finished else 130
@@ -81,11 +83,11 @@ def _new(args: argparse.Namespace) -> tuple[SessionFolder, dict[str, Any]]:
 def _resumed(path: Path) -> tuple[SessionFolder, dict[str, Any]]:
     """Folder and settings of an earlier session."""
     folder = SessionFolder.open(path)
+    folder.claim()
     return folder, json.loads(folder.settings.read_text())
 
 
-def _parameters(settings: dict[str, Any], folder: SessionFolder, resume: bool, shows_screen: bool,
-                ) -> dict[str, dict[str, Any]]:
+def _parameters(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) -> dict[str, dict[str, Any]]:
     """ROS parameters of all nodes."""
     parameters = ros_parameters.load(Path(settings['params_file']))
 
@@ -96,7 +98,7 @@ def _parameters(settings: dict[str, Any], folder: SessionFolder, resume: bool, s
     put('torque_ctrl_node', moment_limit=preset(settings['preset']).task.moment_limit)
     put('teleop_key_node', screen='auto' if shows_screen else 'off')
     put('ppo_agent_node', preset=settings['preset'], seed=settings['seed'], episodes=settings['episodes'],
-        max_minutes=settings['minutes'], output=str(folder.learner), resume=resume)
+        max_minutes=settings['minutes'], output=str(folder.learner))
     put('session_recorder_node', output=str(folder.bag))
     if settings['tutor'].startswith('simulated'):
         put('sim_tutor_node', profile=settings['tutor'].removeprefix('simulated: '), seed=settings['seed'])

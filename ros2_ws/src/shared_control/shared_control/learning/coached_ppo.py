@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import torch
+from stable_baselines3.common.type_aliases import RolloutBufferSamples
 from torch.nn.functional import mse_loss
 
 from ..envs.plant import POLICY_PERIOD
@@ -68,7 +69,7 @@ class CoachedPPO(EpisodePPO):
         observations, labels = map(torch.as_tensor, self._corrections)
         for _ in range(self.n_epochs):
             for batch in self.rollout_buffer.get(self.batch_size):
-                means = self.policy.get_distribution(observations).distribution.mean
+                means = self.policy.get_distribution(observations).mode()
                 loss = self._ppo_loss(batch) + self._weight * mse_loss(means, labels)
                 self.policy.optimizer.zero_grad()
                 loss.backward()
@@ -76,13 +77,14 @@ class CoachedPPO(EpisodePPO):
                 self.policy.optimizer.step()
             self._n_updates += 1
 
-    def _ppo_loss(self, batch) -> torch.Tensor:
+    def _ppo_loss(self, batch: RolloutBufferSamples) -> torch.Tensor:
         """The clipped surrogate, value and entropy loss of a minibatch, as in Stable-Baselines3's ``PPO.train``."""
         values, log_probability, entropy = self.policy.evaluate_actions(batch.observations, batch.actions)
         advantages = batch.advantages
         if len(advantages) > 1:
             advantages = (advantages - advantages.mean()) / (advantages.std() + 1e-8)
         ratio = torch.exp(log_probability - batch.old_log_prob)
+        assert entropy is not None, 'a Gaussian policy has an entropy'
         clip = self.preset.ppo.clip_range
         surrogate = torch.min(advantages * ratio, advantages * ratio.clamp(1 - clip, 1 + clip)).mean()
         return (-surrogate - self.ent_coef * entropy.mean()

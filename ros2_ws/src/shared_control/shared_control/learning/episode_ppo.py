@@ -9,6 +9,7 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.utils import set_random_seed
 
+from ..seeds import episode_seed
 from .episode import Choice, Episode, rollout_buffer
 from .presets import Preset
 
@@ -65,8 +66,12 @@ class EpisodePPO(PPO):
     @torch.no_grad()
     def mean_actions(self, observations: np.ndarray) -> np.ndarray:
         """What the policy does without exploring, clipped to the action space; (n, 3) -> (n, 1)."""
-        means = self.policy.get_distribution(torch.as_tensor(observations)).distribution.mean
+        means = self.policy.get_distribution(torch.as_tensor(observations)).mode()
         return means.clamp(-1.0, 1.0).numpy()
+
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        """The action without exploring; (3,) -> (1,)."""
+        return self.mean_actions(observation[None])[0]
 
     def learn_from(self, episode: Episode) -> None:
         """One update from a finished episode."""
@@ -75,7 +80,7 @@ class EpisodePPO(PPO):
         with torch.no_grad():
             last_value = self.policy.predict_values(torch.as_tensor(episode.last_observation).unsqueeze(0))
         self.rollout_buffer = rollout_buffer(
-            episode, last_value, self.observation_space, self.action_space, settings.gamma, settings.gae_lambda)
+            episode, last_value, OBSERVATION_SPACE, ACTION_SPACE, settings.gamma, settings.gae_lambda)
         self.num_timesteps += len(episode)
         self.train()
         self.episode += 1
@@ -83,8 +88,3 @@ class EpisodePPO(PPO):
     def learn(self, *_: Any, **__: Any) -> 'EpisodePPO':
         """Not this way: see :func:`shared_control.learning.learn.learn`."""
         raise NotImplementedError('use shared_control.learning.learn.learn')
-
-
-def episode_seed(seed: int, episode: int) -> int:
-    """A seed of 31 bits that belongs to ``episode`` (from 1) of the run ``seed``."""
-    return int(np.random.SeedSequence((seed, episode)).generate_state(1)[0] >> 1)

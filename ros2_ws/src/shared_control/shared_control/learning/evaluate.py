@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..envs.balance_env import BalanceEnv
-from ..envs.plant import POLICY_PERIOD, PlantInterrupted
+from ..envs.plant import PlantInterrupted
+from ..seeds import episode_seed
 from ..task.settings import TaskSettings
-from .episode_ppo import episode_seed
+from .hooks import Hooks
+from .record import EpisodeRecord, settled
 
 Act = Callable[[np.ndarray], np.ndarray]
 """A policy: observation (3,) -> action (1,)."""
@@ -17,19 +19,12 @@ TEST_EPISODES = 20
 TEST_SECONDS = 10.0
 TEST_SEED = 424_242
 """Of the ball starts; another for each evaluation of a study."""
-SETTLED_SECONDS = 3.0
-"""The end of an episode, over which a settled ball is judged, s."""
 POSITION_ERROR_MAX = 0.02
 """Mean |position error| of a success, m."""
 VELOCITY_MAX = 0.03
 """Mean |velocity| of a success, m/s."""
 SUCCESSES_NEEDED = 19
 """Of 20 test episodes, in two evaluations in a row."""
-
-
-def settled(values: np.ndarray) -> float:
-    """Mean magnitude over the last 3 s of a series at the policy's rate."""
-    return float(np.abs(values[-round(SETTLED_SECONDS / POLICY_PERIOD):]).mean())
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,49 +87,48 @@ test_settings.__test__ = False  # type: ignore[attr-defined]
 
 
 def evaluate(act: Act, env: BalanceEnv, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
-             on_episode: Callable[[int, TestEpisode], None] = lambda *_: None) -> Evaluation:
+             hooks: Hooks | None = None) -> Evaluation:
     """Test ``act`` in ``env`` (with :func:`test_settings`, and nobody at the keys).
 
     Args:
         seed: of the ball starts.
-        on_episode: is told each episode's number (from 1) and outcome.
+        hooks: are told of each episode.
     """
-    results = []
-    for number in range(1, episodes + 1):
-        results.append(run_test_episode(act, env, episode_seed(seed, number)))
-        on_episode(number, results[-1])
-    return Evaluation(tuple(results))
+    hooks = hooks or Hooks()
+    return Evaluation(tuple(
+        run_test_episode(act, env, number, seed, hooks) for number in range(1, episodes + 1)))
 
 
 def passes(act: Act, env: BalanceEnv, seed: int = TEST_SEED) -> bool:
     """Whether ``act`` succeeds in 19 of 20 episodes; stops as soon as the answer is known."""
     successes = failures = 0
-    for number in range(1, TEST_EPISODES + 1):
-        if run_test_episode(act, env, episode_seed(seed, number)).success:
+    while successes < SUCCESSES_NEEDED and failures <= TEST_EPISODES - SUCCESSES_NEEDED:
+        if run_test_episode(act, env, successes + failures + 1, seed, Hooks()).success:
             successes += 1
         else:
             failures += 1
-        if successes == SUCCESSES_NEEDED or failures > TEST_EPISODES - SUCCESSES_NEEDED:
-            break
     return successes == SUCCESSES_NEEDED
 
 
-def run_test_episode(act: Act, env: BalanceEnv, seed: int) -> TestEpisode:
-    """One episode of a test, tried again when the plant was interrupted."""
+def run_test_episode(act: Act, env: BalanceEnv, number: int, seed: int, hooks: Hooks) -> TestEpisode:
+    """Episode ``number`` (from 1) of the test ``seed``; begun anew when the plant was interrupted."""
     while True:
+        record = EpisodeRecord(number, 'test')
+        hooks.episode_started(record)
         try:
-            return _run(act, env, seed)
-        except PlantInterrupted:
+            _run(act, env, episode_seed(seed, number), record, hooks)
+        except PlantInterrupted as error:
+            hooks.interrupted(error)
             continue
+        hooks.episode_tested(record)
+        return TestEpisode(np.array(record.position_error), np.array(record.velocity), record.fallen)
 
 
-def _run(act: Act, env: BalanceEnv, seed: int) -> TestEpisode:
+def _run(act: Act, env: BalanceEnv, seed: int, record: EpisodeRecord, hooks: Hooks) -> None:
     observation, _ = env.reset(seed=seed)
-    errors, velocities = [], []
     ended = False
     while not ended:
         observation, _, terminated, truncated, info = env.step(act(observation))
-        errors.append(info['state'].position_error)
-        velocities.append(info['state'].ball_velocity)
+        record.add(info)
+        hooks.stepped(record)
         ended = terminated or truncated
-    return TestEpisode(np.array(errors), np.array(velocities), terminated)

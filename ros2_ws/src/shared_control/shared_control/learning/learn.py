@@ -7,31 +7,9 @@ from ..envs.plant import PlantInterrupted
 from .coached_ppo import CoachedPPO
 from .episode import Episode
 from .episode_ppo import EpisodePPO
+from .hooks import Hooks
 from .presets import Preset
 from .record import EpisodeRecord
-
-
-class Hooks:
-    """What the loop tells, and the one thing it asks. Override what is of interest."""
-
-    def stop(self) -> bool:
-        """Asked before each episode: whether to leave it at that."""
-        return False
-
-    def episode_started(self, record: EpisodeRecord) -> None:
-        """The ball is about to be dropped; ``record`` fills up from now on."""
-
-    def stepped(self, record: EpisodeRecord) -> None:
-        """One policy period has passed."""
-
-    def learning_started(self, record: EpisodeRecord) -> None:
-        """The episode is over, the update begins: the time to let the arm rest."""
-
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """The update is done, the learner consistent: the time to save it."""
-
-    def interrupted(self, error: PlantInterrupted) -> None:
-        """The plant went away: the episode is void and begins anew."""
 
 
 def make_learner(preset: Preset, seed: int = 0) -> EpisodePPO:

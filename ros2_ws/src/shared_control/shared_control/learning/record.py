@@ -1,4 +1,4 @@
-"""The figures of one episode of teaching."""
+"""The figures of one episode, taught or tested."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -6,9 +6,16 @@ from typing import Any
 import numpy as np
 
 from ..envs.plant import POLICY_PERIOD
-from .evaluate import settled
+
+SETTLED_SECONDS = 3.0
+"""The end of an episode, over which a settled ball is judged, s."""
 
 REWARD_TERMS = ('R_alpha', 'R_V', 'R_kw', 'R_P', 'R_Pe', 'fall')
+
+
+def settled(values: np.ndarray) -> float:
+    """Mean magnitude over the last 3 s of a series at the policy's rate."""
+    return float(np.abs(values[-round(SETTLED_SECONDS / POLICY_PERIOD):]).mean())
 
 
 @dataclass(eq=False)
@@ -24,8 +31,10 @@ class EpisodeRecord:
     fallen: bool = False
     learn_seconds: float = 0.0
     """Duration of the update after the episode, s."""
-    _position_error: list[float] = field(default_factory=list)
-    _velocity: list[float] = field(default_factory=list)
+    position_error: list[float] = field(default_factory=list)
+    """Of each step, m"""
+    velocity: list[float] = field(default_factory=list)
+    """Of each step, m/s"""
     _m_y_human: list[float] = field(default_factory=list)
     _m_y_agent: list[float] = field(default_factory=list)
 
@@ -34,15 +43,15 @@ class EpisodeRecord:
         for name, value in info['reward_terms'].items():
             self.reward_terms[name] += value
         self.fallen = info['fallen']
-        self._position_error.append(info['state'].position_error)
-        self._velocity.append(info['state'].ball_velocity)
+        self.position_error.append(info['state'].position_error)
+        self.velocity.append(info['state'].ball_velocity)
         self._m_y_human.append(info['m_y_human'])
         self._m_y_agent.append(info['m_y_agent'])
 
     @property
     def steps(self) -> int:
         """Steps so far."""
-        return len(self._velocity)
+        return len(self.velocity)
 
     @property
     def episode_return(self) -> float:
@@ -69,5 +78,5 @@ class EpisodeRecord:
             'fallen': int(self.fallen), 'mean_abs_m_y_human': float(np.abs(self._m_y_human).mean()),
             'mean_abs_m_y_agent': float(np.abs(self._m_y_agent).mean()), 'human_share': self.human_share,
             'intervention_rate': self.intervention_rate,
-            'settled_position_error': settled(np.array(self._position_error)),
-            'settled_velocity': settled(np.array(self._velocity)), 'learn_seconds': self.learn_seconds}
+            'settled_position_error': settled(np.array(self.position_error)),
+            'settled_velocity': settled(np.array(self.velocity)), 'learn_seconds': self.learn_seconds}

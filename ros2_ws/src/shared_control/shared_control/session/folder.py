@@ -6,6 +6,8 @@ import shutil
 from pathlib import Path
 from typing import IO, Any
 
+import yaml
+
 
 class SessionFolderError(OSError):
     """A session's folder cannot be used; the message names it and says why."""
@@ -119,6 +121,20 @@ class SessionFolder:
         if not isinstance(content, dict):
             raise SessionFolderError(f'cannot read {path}: expected a JSON object')
         return content
+
+    def ros_parameters(self, node: str) -> dict[str, Any]:
+        """A node's parameters in ``parameters.yaml``; empty when they are not there.
+
+        Raises:
+            SessionFolderError: the file is no parameter file.
+        """
+        try:
+            content = yaml.safe_load(self.parameters.read_text())
+            return dict(content.get(node, {}).get('ros__parameters', {}))
+        except FileNotFoundError:
+            return {}
+        except (OSError, yaml.YAMLError, AttributeError, TypeError, ValueError) as error:
+            raise SessionFolderError(f'cannot read {self.parameters}: {error}') from error
 
     def _is_session(self) -> bool:
         return self.settings.exists() or self.bag.exists()

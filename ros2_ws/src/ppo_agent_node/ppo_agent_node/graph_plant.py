@@ -1,0 +1,168 @@
+"""The plant of an environment, reached through the topics of the graph."""
+
+import math
+import struct
+import time
+from collections.abc import Callable
+
+import numpy as np
+from geometry_msgs.msg import WrenchStamped
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+
+from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted, PlantState
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.joints import joint_positions
+from shared_control_ros.stamps import set_ns, to_ns
+
+from .simulator import Simulator
+from .wrench_track import WrenchTrack
+
+PERIOD_NS = round(POLICY_PERIOD * 1e9)
+JUMP_NS = 500_000_000
+"""A gap in the stamps that is longer, or any step back, means that the simulator was started anew."""
+JOINTS_SECONDS = 0.5
+"""How long the joints of a ball's stamp may be overdue, s; they are sent before it."""
+COMMAND_TIMEOUT = 0.1
+"""A wrench of the human that is older counts as zero, as in torque_ctrl_node, s."""
+
+
+class GraphPlant:
+    """See :class:`shared_control.envs.plant.Plant`.
+
+    Policy ticks are the stamps of ``/ball`` that are multiples of 20 ms. The state at such a tick is that ball and the
+    ``/joint_states`` of the same stamp; the moment that answers it carries its stamp, too.
+
+    A graph that stands still (paused by a person, or without its controller) is waited for: its time stands still,
+    too. One whose stamps jump was started anew: :class:`PlantInterrupted`.
+
+    Args:
+        node: the agent's node.
+        background: serves it.
+        attend: called at every step and again and again while waiting; may raise to end the episode.
+    """
+
+    def __init__(self, node: Node, background: Background, attend: Callable[[], None]):
+        self._node = node
+        self._attend = attend
+        self._simulator = Simulator(node, background)
+        self._balls = Polled(node, contract.BALL, depth=contract.BALL.qos.depth)
+        self._joints = Polled(node, contract.JOINT_STATES, depth=contract.JOINT_STATES.qos.depth, raw=True)
+        self._human = WrenchTrack(node, contract.HUMAN_WRENCH, COMMAND_TIMEOUT)
+        self._applied = WrenchTrack(node, contract.APPLIED_WRENCH)
+        self._publisher = node.create_publisher(
+            contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)
+        self._wrench = WrenchStamped()
+        self._wrench.header.frame_id = contract.BASE_FRAME
+        self._stamp_ns = 0
+        self.late_steps = 0
+        """Policy ticks that came and went while the agent was busy."""
+
+    def wait_until_up(self) -> None:
+        """Wait until the simulator and the controller are there."""
+        while not (self._simulator.is_there() and self._applied.publisher_count()):
+            self._node.get_logger().info(
+                'waiting for panda_sim_node and torque_ctrl_node', throttle_duration_sec=5.0)
+            time.sleep(0.1)
+            self._attend()
+
+    def reset(self, seed: int | None) -> PlantState:
+        """See :meth:`Plant.reset`."""
+        self.rest()
+        self._simulator.reset(seed, self._attend)
+        for queue in (self._balls, self._joints):
+            queue.clear()
+        self._human.clear()
+        self._applied.clear()
+        self._simulator.pause(False, self._attend)
+        ball = self._next_ball()
+        return self._read(ball, to_ns(ball.header.stamp))
+
+    def advance(self, m_y_agent: float) -> PlantState:
+        """See :meth:`Plant.advance`."""
+        self._publish(m_y_agent)
+        started_ns = self._stamp_ns
+        ball = self._next_ball()
+        step_ns = to_ns(ball.header.stamp) - started_ns
+        if not 0 < step_ns <= JUMP_NS:
+            raise PlantInterrupted(f'the stamps on {self._balls.topic_name} jumped by {step_ns * 1e-9:.3f} s: '
+                                   'the simulator was started anew')
+        self.late_steps += step_ns // PERIOD_NS - 1
+        return self._read(ball, started_ns)
+
+    def rest(self) -> None:
+        """Ask for nothing, and stop time."""
+        self._answer_with_zero()
+        self._simulator.pause(True, self._answer_with_zero)
+
+    def _answer_with_zero(self) -> None:
+        """Time goes on until the pause begins, and a controller that waits for an answer must have one."""
+        while (ball := self._balls.take()) is not None:
+            self._stamp_ns = to_ns(ball.header.stamp)
+        if self._stamp_ns:
+            self._publish(0.0)
+        self._attend()
+
+    def _publish(self, m_y_agent: float) -> None:
+        """M_yai, N m, as the answer to the last observation."""
+        set_ns(self._wrench.header.stamp, self._stamp_ns)
+        self._wrench.wrench.torque.y = m_y_agent
+        self._publisher.publish(self._wrench)
+
+    def _next_ball(self) -> Odometry:
+        """The ball at the next policy tick; at the last one, when some went by."""
+        newest = None
+        silent_since = time.monotonic()
+        while newest is None:
+            self._attend()
+            ball = self._balls.wait(0.05)
+            while ball is not None:
+                stamp_ns = to_ns(ball.header.stamp)
+                if stamp_ns % PERIOD_NS == 0 and stamp_ns != self._stamp_ns and self._is_usable(ball):
+                    newest = ball
+                ball = self._balls.take()
+            if time.monotonic() - silent_since > 1.0:
+                self._node.get_logger().info(
+                    f'{self._balls.topic_name} has been silent for {time.monotonic() - silent_since:.0f} s: paused, or '
+                    'waiting for torque_ctrl_node', throttle_duration_sec=5.0)
+        return newest
+
+    def _is_usable(self, ball: Odometry) -> bool:
+        position, velocity = ball.pose.pose.position, ball.twist.twist.linear
+        if ball.header.frame_id == contract.BASE_FRAME and math.isfinite(
+                position.x + position.y + position.z + velocity.x + velocity.y + velocity.z):
+            return True
+        self._node.get_logger().error(
+            f'dropped a message on {self._balls.topic_name}: frame_id {ball.header.frame_id!r} (expected '
+            f'{contract.BASE_FRAME!r}), position {position}, velocity {velocity}', throttle_duration_sec=1.0)
+        return False
+
+    def _read(self, ball: Odometry, started_ns: int) -> PlantState:
+        """The state at the tick of ``ball``, at the end of a period that began at ``started_ns``."""
+        self._stamp_ns = to_ns(ball.header.stamp)
+        position, velocity = ball.pose.pose.position, ball.twist.twist.linear
+        return PlantState(
+            self._joints_at(self._stamp_ns), (position.x, position.y, position.z),
+            (velocity.x, velocity.y, velocity.z), self._human.at(started_ns), self._applied.at(self._stamp_ns - 1))
+
+    def _joints_at(self, stamp_ns: int) -> np.ndarray:
+        """Joint positions at a tick, (7,), rad."""
+        deadline = time.monotonic() + JOINTS_SECONDS
+        while time.monotonic() < deadline:
+            serialized = self._joints.wait(0.05)
+            if serialized is not None and _stamp_of(serialized) == stamp_ns:
+                return joint_positions(deserialize_message(serialized, contract.JOINT_STATES.msg_type))
+        raise PlantInterrupted(f'no {self._joints.topic_name} with the stamp of {self._balls.topic_name}')
+
+    def close(self) -> None:
+        """Leave no moment behind."""
+        if self._stamp_ns:
+            self._publish(0.0)
+
+
+def _stamp_of(serialized: bytes) -> int:
+    """Stamp of a serialized message that begins with a Header, ns: most of a 1 kHz topic is not worth more."""
+    seconds, nanoseconds = struct.unpack_from('<iI', serialized, 4)  # after the 4 bytes of the CDR encapsulation
+    return seconds * 1_000_000_000 + nanoseconds

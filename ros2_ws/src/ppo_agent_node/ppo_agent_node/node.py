@@ -1,0 +1,215 @@
+"""PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
+
+Takes /ball, /joint_states, /human/target_wrench and /target_wrench, publishes /agent/target_wrench and /training/*,
+pauses and resets the simulator between episodes. Service: ~/finish (Trigger): end the teaching after this episode.
+"""
+
+import time
+from pathlib import Path
+
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from shared_control.envs.balance_env import BalanceEnv
+from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted
+from shared_control.learning.episode_ppo import EpisodePPO
+from shared_control.learning.episode_table import EpisodeTable
+from shared_control.learning.evaluate import TEST_SECONDS, evaluate, test_settings
+from shared_control.learning.hooks import Hooks
+from shared_control.learning.learn import learn, make_learner
+from shared_control.learning.policy_file import PolicyFileError, load_policy, save_policy
+from shared_control.learning.presets import PRESETS, preset
+from shared_control.learning.record import EpisodeRecord
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background
+from shared_control_ros.parameters import ParameterError, declare
+from shared_control_ros.runner import Stop, run
+
+from .graph_plant import GraphPlant
+from .training_topics import TrainingTopics
+
+STEPS_PER_PROGRESS = 5
+"""Progress is told at 10 Hz."""
+POLICY_NAME = 'policy.safetensors'
+TABLE_NAME = 'episodes.csv'
+
+
+class _Stopped(Exception):
+    """The node was told to stop in mid-episode."""
+
+
+class PpoAgentNode(Hooks):
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('ppo_agent_node')
+        mode = declare(
+            node, 'mode', 'teach', 'teach: learn, then test. test: only test a policy.', choices=('teach', 'test'))
+        preset_name = declare(
+            node, 'preset', 'coached', 'What is learned and how (mode teach).', choices=tuple(PRESETS))
+        seed = declare(node, 'seed', 0, 'Of weights, exploration and ball starts.', minimum=0, maximum=2**31 - 1)
+        self._episodes = declare(
+            node, 'episodes', 0, 'Teach until this many, those of an earlier run included; 0: until ~/finish is '
+            'called or the time is up.', minimum=0, maximum=100_000)
+        minutes = declare(
+            node, 'max_minutes', 45.0, 'Teach for this long at the most.', unit='min', minimum=0.1, maximum=1440.0)
+        self._test_episodes = declare(
+            node, 'test_episodes', 0, 'Test the policy alone with so many episodes on the graph, in the end.',
+            minimum=0, maximum=1000)
+        output = declare(
+            node, 'output', '', f'Folder for {POLICY_NAME} and {TABLE_NAME}; a learner that is there goes on. Empty: '
+            'nothing is kept.')
+        resume = declare(node, 'resume', False, 'Insist that output holds a learner to go on with.')
+        policy = declare(node, 'policy', '', 'The policy file to test (mode test).')
+
+        self._teaches = mode == 'teach'
+        self._policy_path: Path | None = None
+        self._table: EpisodeTable | None = None
+        if self._teaches:
+            self._learner = self._make_learner(preset_name, seed, output, resume)
+        else:
+            if not self._test_episodes:
+                raise ParameterError("parameter 'test_episodes' must be at least 1 in mode 'test'")
+            self._learner = _load(Path(policy), 'policy')
+        self._seconds_left = minutes * 60.0
+        self._finish = False
+        self._training = TrainingTopics(node)
+        self._diagnostics = Diagnostics(node, POLICY_PERIOD)
+        self._background = Background(node)
+        self._plant = GraphPlant(node, self._background, self._attend)
+        self._stop: Stop | None = None
+        node.create_service(Trigger, '~/finish', self._on_finish)
+
+    def _make_learner(self, preset_name: str, seed: int, output: str, resume: bool) -> EpisodePPO:
+        """A new learner, or the one in the output folder."""
+        learner = make_learner(preset(preset_name), seed)
+        if output:
+            folder = Path(output)
+            folder.mkdir(parents=True, exist_ok=True)
+            self._policy_path = folder / POLICY_NAME
+            if self._policy_path.exists():
+                learner = _load(self._policy_path, 'output')
+                if learner.preset.name != preset_name:
+                    raise ParameterError(
+                        f"parameter 'preset' is {preset_name!r}, but {self._policy_path} was learned with "
+                        f'{learner.preset.name!r}: name that one, or another output folder')
+                self.node.get_logger().info(
+                    f'going on after episode {learner.episode} of {self._policy_path} (seed {learner.seed})')
+            self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)
+        if resume and not learner.episode:
+            raise ParameterError(f"parameter 'resume' is true, but there is no {POLICY_NAME} in output ({output!r})")
+        return learner
+
+    # -- running -----------------------------------------------------------------------------------------------------
+
+    def run(self, stop: Stop) -> None:
+        """Teach, test, and leave when that is done."""
+        self._stop = stop
+        try:
+            self._wait()
+            if self._teaches:
+                learn(self._learner, BalanceEnv(self._plant, self._learner.preset.task), self._episodes or None, self)
+            if self._test_episodes:
+                self._test()
+            self._training.enter('done')
+        except _Stopped:
+            self.node.get_logger().info(f'stopped; {self._learner.episode} episodes are learned and kept')
+
+    def _wait(self) -> None:
+        self._training.enter('wait')
+        self._plant.wait_until_up()
+
+    def _test(self) -> None:
+        env = BalanceEnv(self._plant, test_settings(self._learner.preset.task))
+        evaluation = evaluate(self._learner.act, env, self._test_episodes, hooks=self)
+        self._training.success(evaluation.success_rate)
+        self.node.get_logger().info(
+            f'alone: {evaluation.successes} of {self._test_episodes} episodes succeeded; over their last 3 s mean '
+            f'|position error| {1e3 * evaluation.mean_position_error:.1f} mm, '
+            f'mean |velocity| {1e3 * evaluation.mean_velocity:.1f} mm/s')
+
+    def _attend(self) -> None:
+        """Everything besides learning; called once a step and while waiting."""
+        self._background.poll()
+        if self._diagnostics.due():
+            self._diagnostics.publish(
+                {}, phase=self._training.phase, episode=self._learner.episode, late_steps=self._plant.late_steps)
+        if self._stop is not None and self._stop.requested:
+            raise _Stopped
+
+    def _on_finish(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._finish = True
+        response.success = self._teaches
+        response.message = (
+            'the teaching ends with this episode' if self._teaches else 'nothing is taught: the mode is test')
+        return response
+
+    # -- hooks of learning and testing -------------------------------------------------------------------------------
+
+    def stop(self) -> bool:
+        """See :class:`Hooks`."""
+        self._attend()
+        return self._finish or self._seconds_left <= 0.0
+
+    def episode_started(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        self._started = time.monotonic()
+        self._diagnostics.skip()
+        self._training.enter(record.phase)
+        self._training.episode(record.episode)
+
+    def stepped(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        self._diagnostics.tick()
+        if record.steps % STEPS_PER_PROGRESS == 0:
+            length = self._learner.preset.task.episode_seconds if record.phase == 'teach' else TEST_SECONDS
+            self._training.progress(length - record.steps * POLICY_PERIOD, record.human_share)
+
+    def learning_started(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        self._training.episode_return(record.episode_return)
+        self._training.enter('learn')
+        self._plant.rest()
+
+    def episode_learned(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        if self._table is not None and self._policy_path is not None:
+            self._table.append(record)  # before the learner: a row too many is dropped on resuming
+            save_policy(self._learner, self._policy_path)
+        self._seconds_left -= time.monotonic() - self._started
+        self.node.get_logger().info(
+            f'episode {record.episode}: return {record.episode_return:.1f}, human share {record.human_share:.0%}, '
+            f'learned in {record.learn_seconds:.2f} s')
+
+    def episode_tested(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        self._training.episode_return(record.episode_return)
+        if self._table is not None:
+            self._table.append(record)
+
+    def interrupted(self, error: PlantInterrupted) -> None:
+        """See :class:`Hooks`."""
+        self.node.get_logger().warning(f'the episode is void: {error}')
+        self._wait()
+
+    def close(self) -> None:
+        """Leave no moment behind, and see to it that the last words arrive."""
+        self._plant.close()
+        self._training.flush()
+        self._background.close()
+
+
+def _load(path: Path, parameter: str) -> EpisodePPO:
+    try:
+        return load_policy(path)
+    except PolicyFileError as error:
+        raise ParameterError(f'parameter {parameter!r}: {error}') from error
+
+
+def main() -> int:
+    """Entry point."""
+    return run(PpoAgentNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,53 @@
+"""What the agent tells of the training, under ``/training/``."""
+
+from typing import Any
+
+from rclpy.node import Node
+from std_msgs.msg import Float64, Int32, String
+
+from shared_control_ros import contract
+from shared_control_ros.contract import Topic
+
+
+class TrainingTopics:
+    """Publishes phase, episode, time left, share, return and success."""
+
+    def __init__(self, node: Node):
+        def publisher(topic: Topic) -> Any:
+            return node.create_publisher(topic.msg_type, topic.name, topic.qos)
+
+        self._phase_publisher = publisher(contract.PHASE)
+        self._episode = publisher(contract.EPISODE)
+        self._time_left = publisher(contract.TIME_LEFT)
+        self._return = publisher(contract.EPISODE_RETURN)
+        self._share = publisher(contract.HUMAN_SHARE)
+        self._success = publisher(contract.SUCCESS)
+        self.phase = ''
+
+    def enter(self, phase: str) -> None:
+        """``teach``, ``learn``, ``test``, ``wait`` or ``done``; published when it changes."""
+        if phase != self.phase:
+            self.phase = phase
+            self._phase_publisher.publish(String(data=phase))
+
+    def episode(self, number: int) -> None:
+        """An episode begins."""
+        self._episode.publish(Int32(data=number))
+
+    def progress(self, seconds_left: float, human_share: float) -> None:
+        """How the episode stands."""
+        self._time_left.publish(Float64(data=seconds_left))
+        self._share.publish(Float64(data=human_share))
+
+    def episode_return(self, value: float) -> None:
+        """An episode has ended."""
+        self._return.publish(Float64(data=value))
+
+    def success(self, rate: float) -> None:
+        """A test has ended; 0..1."""
+        self._success.publish(Float64(data=rate))
+
+    def flush(self) -> None:
+        """Wait until everybody has the last words."""
+        for publisher in (self._phase_publisher, self._return, self._success):
+            publisher.wait_for_all_acked()

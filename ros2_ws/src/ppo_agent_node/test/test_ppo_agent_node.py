@@ -1,0 +1,112 @@
+"""The agent on the running graph: simulator (unpaced) and controller are the real ones."""
+
+import signal
+
+import pytest
+from shared_control.learning.episode_table import read_rows
+from shared_control.learning.policy_file import load_policy, read_description
+from shared_control_ros import contract
+from std_srvs.srv import SetBool, Trigger
+
+EPISODE_TIMEOUT = 90.0
+
+
+@pytest.fixture
+def output(tmp_path):
+    return tmp_path / 'learner'
+
+
+@pytest.fixture
+def graph(start_node):
+    """The simulator as a node that can be killed."""
+    start_node('torque_ctrl_node')
+    return start_node('panda_sim_node', paced=False)
+
+
+@pytest.fixture
+def phases(observer):
+    """What the agent tells, as strings."""
+    messages = observer.listen(contract.PHASE)
+    return lambda: [m.data for m in messages]
+
+
+def exit_code(observer, node, timeout=EPISODE_TIMEOUT):
+    observer.spin(lambda: node.process.poll() is not None, timeout, f'the agent ends:\n{node.log()}')
+    return node.process.returncode
+
+
+def test_teaches_tests_and_keeps_everything(graph, start_node, observer, phases, output):
+    listened = {t.name: observer.listen(t) for t in (
+        contract.AGENT_WRENCH, contract.EPISODE, contract.EPISODE_RETURN, contract.SUCCESS, contract.TIME_LEFT)}
+    agent = start_node('ppo_agent_node', episodes=1, test_episodes=1, output=output, seed=5)
+    assert exit_code(observer, agent) == 0, agent.log()
+    observer.spin_for(0.3)
+    assert phases() == ['wait', 'teach', 'learn', 'test', 'done']
+    assert [m.data for m in listened[contract.EPISODE.name]] == [1, 1]
+    assert len(listened[contract.EPISODE_RETURN.name]) == 2
+    assert 0.0 <= listened[contract.SUCCESS.name][0].data <= 1.0
+    assert max(m.data for m in listened[contract.TIME_LEFT.name]) < 15.0
+    wrenches = listened[contract.AGENT_WRENCH.name]
+    assert {m.header.frame_id for m in wrenches} == {contract.BASE_FRAME}
+    assert all(m.header.stamp.nanosec % 10_000_000 == 0 for m in wrenches)
+    assert wrenches[-1].wrench.torque.y == 0.0
+    taught, tested = read_rows(output / 'episodes.csv')
+    assert (taught['phase'], taught['steps'], tested['phase'], tested['steps']) == ('teach', '750', 'test', '500')
+    learner = load_policy(output / 'policy.safetensors')
+    assert (learner.episode, learner.seed, learner.preset.name) == (1, 5, 'coached')
+    assert float(taught['return']) == pytest.approx(listened[contract.EPISODE_RETURN.name][0].data, rel=1e-4)
+
+
+def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, output):
+    """Simulator killed in mid-episode, a pause by a person, ~/finish, agent killed, resumed, told to leave."""
+    left, reports = observer.listen(contract.TIME_LEFT), observer.listen(contract.DIAGNOSTICS)
+    agent = start_node('ppo_agent_node', output=output)
+    observer.spin(lambda: left and left[-1].data < 14.0, 40.0, 'an episode is under way')
+    graph.process.kill()
+    graph.process.wait()
+    start_node('panda_sim_node', paced=False)
+    agent.wait_for_log('the episode is void', 40.0)
+    left.clear()
+    observer.spin(lambda: left and left[-1].data < 14.0, 40.0, 'the next one is under way')
+    observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=True))
+    observer.spin_for(1.5)
+    observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=False))
+    assert observer.call(Trigger, contract.FINISH_SERVICE, Trigger.Request()).success
+    assert exit_code(observer, agent) == 0, agent.log()
+    assert phases() == ['wait', 'teach', 'wait', 'teach', 'learn', 'done']
+    assert agent.log().count('the episode is void') == 1
+    assert any(r.status[0].name == '/ppo_agent_node' for r in reports)
+    assert read_description(output / 'policy.safetensors')['episode'] == 1
+
+    left.clear()
+    killed = start_node('ppo_agent_node', output=output)
+    killed.wait_for_log('going on after episode 1', 40.0)
+    observer.spin(lambda: left and left[-1].data < 14.0, 40.0)
+    killed.stop(signal.SIGKILL)
+
+    wrenches = observer.listen(contract.AGENT_WRENCH)
+    left.clear()
+    resumed = start_node('ppo_agent_node', output=output, resume=True)
+    observer.spin(lambda: left and left[-1].data < 14.0, 40.0)
+    assert resumed.stop(signal.SIGTERM) == 0
+    observer.spin_for(0.3)
+    assert wrenches[-1].wrench.torque.y == 0.0
+    assert 'stopped; 1 episodes are learned and kept' in resumed.log()
+    assert [r['episode'] for r in read_rows(output / 'episodes.csv')] == ['1']
+
+
+@pytest.mark.parametrize(('parameters', 'words'), [
+    ({'mode': 'test', 'test_episodes': 1, 'policy': '/nowhere/policy.safetensors'}, 'no policy file at /nowhere'),
+    ({'mode': 'test', 'test_episodes': 1, 'policy': '/etc/hostname'}, '/etc/hostname is no policy'),
+    ({'mode': 'test'}, "'test_episodes' must be at least 1"),
+    ({'resume': True}, "'resume' is true, but"),
+    ({'output': '/proc/nowhere'}, '/proc'),
+    ({'preset': 'magic'}, "has no choice 'magic'"),
+])
+def test_unusable_parameters_are_one_clear_line(start_node, parameters, words):
+    node = start_node('ppo_agent_node', **parameters)
+    assert node.process.wait(60) == 2
+    lines = [line for line in node.log().splitlines() if line.startswith('error: ')]
+    assert len(lines) == 1
+    assert words in lines[0]
+    assert 'Traceback' not in node.log()

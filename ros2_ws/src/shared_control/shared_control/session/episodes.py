@@ -1,0 +1,46 @@
+"""The agent's table of episodes."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class EpisodeRow:
+    """One episode; what the table does not tell is None."""
+
+    number: int
+    phase: str
+    """``teach`` or ``test``"""
+    seconds: float | None
+    episode_return: float | None
+    fallen: bool | None
+    human_share: float | None
+    """Mean of |M_yh| / (|M_yh| + |M_yai|), 0..1"""
+
+
+def read_episodes(path: Path) -> list[EpisodeRow]:
+    """The rows of ``episodes.csv``; none when the file is missing. Columns are found by name, others ignored.
+
+    Raises:
+        ValueError: a row is not what it should be; the message names file and line.
+    """
+    if not path.is_file():
+        return []
+    rows = []
+    with path.open(newline='') as file:
+        for line, row in enumerate(csv.DictReader(file), start=2):
+            try:
+                fallen = _number(row, 'fallen')
+                rows.append(EpisodeRow(
+                    number=int(row['episode']), phase=row['phase'], seconds=_number(row, 'seconds'),
+                    episode_return=_number(row, 'return'), fallen=None if fallen is None else bool(fallen),
+                    human_share=_number(row, 'human_share')))
+            except (KeyError, ValueError, TypeError) as error:
+                raise ValueError(f'{path}, line {line}: no usable episode ({error!r})') from error
+    return rows
+
+
+def _number(row: dict[str, str], column: str) -> float | None:
+    text = row.get(column)
+    return float(text) if text else None

@@ -1,0 +1,123 @@
+"""Whether M_y = M_yai + M_yh held throughout a bag.
+
+The controller takes the newest moment of human and of agent at every tick, and publishes the sum whenever it changes
+and every ten ticks. A bag does not say which two messages a sum was made of. So this looks for a way to explain every
+applied moment by one message of each source, such that no source ever goes back to an older message and each message
+is taken up within ``LATENCY`` of its arrival.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..control.moments import freshness
+from .bag import Bag
+from .recorded import Wrenches
+from .topics import BASE_FRAME
+
+LATENCY = 0.02
+"""s of the robot's time: by this much at the most the controller may get a message later, or earlier, than the
+recorder. Under load 0.002 s is enough."""
+SETTLING = 1.0
+"""After its start the controller may not have heard of a source for this long, s."""
+SILENCE = 0.2
+"""A node that said nothing for this long (of the recorder's clock) may have been started anew, s."""
+JOINING = 0.5
+"""For this long the controller may hear a node that has just started before the recorder does, s."""
+TOLERANCE = 1e-9
+"""N m"""
+_NONE = -1
+"""In place of a message's index: the controller has not heard of the source."""
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """An applied moment that no two messages explain."""
+
+    received_ns: int
+    stamp_ns: int
+    m_y: float
+    """As applied, N m."""
+    nearest: float
+    """The nearest sum of what the sources had sent, N m."""
+
+
+def find_mismatches(bag: Bag, moment_limit: float, command_timeout: float) -> Iterator[Mismatch]:
+    """Applied moments that are not the sum of what human and agent asked for.
+
+    Args:
+        moment_limit: the controller's bound of |M_y|, N m.
+        command_timeout: the controller's time after which a moment fades, s.
+    """
+    applied = bag.applied
+    agent = _Source(bag, bag.agent, command_timeout)
+    human = _Source(bag, bag.human, command_timeout)
+    silent = _after_silence(applied.received_ns)
+    frontier = [(_NONE, _NONE)]
+    settled_ns = 0
+    for tick, stamp_ns, m_y in zip(range(len(silent)), applied.stamp_ns.tolist(), applied.m_y.tolist(), strict=True):
+        if silent[tick]:
+            frontier = [(_NONE, _NONE)]
+            settled_ns = stamp_ns + round(SETTLING * 1e9)
+        settling = stamp_ns < settled_ns
+        agent_indices, agent_moments = agent.candidates(tick, stamp_ns, settling)
+        human_indices, human_moments = human.candidates(tick, stamp_ns, settling)
+        sums = np.clip(np.add.outer(agent_moments, human_moments), -moment_limit, moment_limit)
+        explanations = [
+            (agent_indices[i], human_indices[j])
+            for i, j in zip(*np.nonzero(np.abs(sums - m_y) <= TOLERANCE), strict=True)
+            if any(i_before <= agent_indices[i] and j_before <= human_indices[j] for i_before, j_before in frontier)]
+        if explanations:
+            frontier = _earliest(explanations)
+        elif not (agent.joining[tick] or human.joining[tick]):
+            nearest = sums.flat[np.abs(sums - m_y).argmin()]
+            yield Mismatch(int(applied.received_ns[tick]), stamp_ns, m_y, float(nearest))
+
+
+class _Source:
+    """The messages of one source that the controller may have taken up at a tick."""
+
+    def __init__(self, bag: Bag, wrenches: Wrenches, timeout: float):
+        arrived_ns = bag.robot_ns(wrenches.received_ns)
+        age = (arrived_ns - wrenches.stamp_ns) * 1e-9
+        usable = ((wrenches.frame == BASE_FRAME) & np.isfinite(wrenches.m_y) & (np.abs(age) < timeout + LATENCY))
+        started_ns = wrenches.received_ns[_after_silence(wrenches.received_ns)]
+        next_start = np.append(started_ns, 2**63 - 1)[np.searchsorted(started_ns, bag.applied.received_ns)]
+        self.joining = next_start - bag.applied.received_ns < JOINING * 1e9
+        """(ticks,): the source has started, but the recorder has not heard it yet."""
+        self._timeout = timeout
+        self._m_y = wrenches.m_y[usable].tolist()
+        self._stamps_ns = wrenches.stamp_ns[usable].tolist()
+        # The controller drops a message that is too old or too new when it comes. Whether one that is nearly so was
+        # dropped cannot be told; it may, but need not have been taken up.
+        certain = np.flatnonzero(np.abs(age[usable]) < timeout - LATENCY)
+        seen_ns = bag.robot_ns(bag.applied.received_ns)
+        latency_ns = round(LATENCY * 1e9)
+        newest_for_certain = np.searchsorted(arrived_ns[usable][certain], seen_ns - latency_ns, 'right')
+        self._first = np.append(_NONE, certain)[newest_for_certain].tolist()
+        self._end = np.searchsorted(arrived_ns[usable], seen_ns + latency_ns, 'right').tolist()
+
+    def candidates(self, tick: int, now_ns: int, settling: bool) -> tuple[list[int], list[float]]:
+        """Indices of messages, and the moment that each amounts to at ``now_ns``, N m."""
+        first = self._first[tick]
+        indices = list(range(max(first, 0), self._end[tick]))
+        moments = [self._m_y[index] * freshness((now_ns - self._stamps_ns[index]) * 1e-9, self._timeout)
+                   for index in indices]
+        if settling or first == _NONE:
+            return [_NONE, *indices], [0.0, *moments]
+        return indices, moments
+
+
+def _after_silence(received_ns: np.ndarray) -> np.ndarray:
+    """Whether a message is the first of all, or the first after a silence."""
+    return np.diff(received_ns, prepend=0) > SILENCE * 1e9
+
+
+def _earliest(pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The pairs to which no other is at most equal in both: what can follow a pair can follow these."""
+    kept: list[tuple[int, int]] = []
+    for pair in sorted(pairs):
+        if not kept or pair[1] < kept[-1][1]:
+            kept.append(pair)
+    return kept

@@ -1,0 +1,52 @@
+"""Key presses as a source of keys publishes them."""
+
+import time
+
+from rclpy.node import Node
+from sensor_msgs.msg import Joy
+
+from shared_control.human.keystrokes import Key
+from shared_control_ros import contract
+from shared_control_ros.stamps import set_ns
+
+SOURCE = 'tutor'
+HELD_SECONDS = 0.06
+"""How long a press lasts, s."""
+REPEAT_SECONDS = 0.09
+"""The state of the keys is repeated when nothing happened for so long, s."""
+
+
+class KeyPublisher:
+    """Presses and releases keys on ``/human/keys`` and repeats their state."""
+
+    def __init__(self, node: Node):
+        self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
+        self._joy = Joy(buttons=[0] * len(Key))
+        self._joy.header.frame_id = SOURCE
+        self._published_at = 0.0
+        self.presses = 0
+
+    def press(self, key: Key, stamp_ns: int) -> None:
+        """A key goes down."""
+        self.presses += 1
+        self._joy.buttons = [int(k is key) for k in Key]
+        self._publish(stamp_ns)
+
+    def update(self, stamp_ns: int) -> None:
+        """Release the key, or repeat the state, when it is time to."""
+        age = time.monotonic() - self._published_at
+        if any(self._joy.buttons):
+            if age >= HELD_SECONDS:
+                self.release(stamp_ns)
+        elif age >= REPEAT_SECONDS:
+            self._publish(stamp_ns)
+
+    def release(self, stamp_ns: int) -> None:
+        """All keys are up."""
+        self._joy.buttons = [0] * len(Key)
+        self._publish(stamp_ns)
+
+    def _publish(self, stamp_ns: int) -> None:
+        set_ns(self._joy.header.stamp, stamp_ns)
+        self._publisher.publish(self._joy)
+        self._published_at = time.monotonic()

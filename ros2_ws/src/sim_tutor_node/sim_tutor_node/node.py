@@ -1,0 +1,106 @@
+"""Simulated tutor: watches the tray and presses keys on /human/keys while the robot is taught.
+
+Takes /ball, /joint_states and /human/target_wrench, and /training/phase and /training/episode. It stands in for a
+person: it sees late and inexactly, and presses keys. In any phase but ``teach`` it keeps its hands off.
+"""
+
+import numpy as np
+from rclpy.node import Node
+
+from shared_control.envs.plant import POLICY_PERIOD, PlantState
+from shared_control.human.profiles import PROFILES, profile
+from shared_control.human.tutor import SimulatedTutor
+from shared_control.seeds import episode_seed
+from shared_control_ros import contract
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.joints import joint_positions
+from shared_control_ros.parameters import declare
+from shared_control_ros.runner import Stop, run
+from shared_control_ros.stamps import to_ns
+
+from .key_publisher import KeyPublisher
+
+PERIOD_NS = round(POLICY_PERIOD * 1e9)
+
+
+class SimTutorNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('sim_tutor_node')
+        name = declare(node, 'profile', 'expert', 'Who it is.', choices=tuple(PROFILES))
+        self._seed = declare(
+            node, 'seed', 0, 'Of errors of perception.', minimum=0, maximum=2**31 - 1)
+        self._tutor = SimulatedTutor(profile(name), self._seed)
+        self._balls = Polled(node, contract.BALL, depth=10)
+        self._joints = Polled(node, contract.JOINT_STATES)
+        self._human = Polled(node, contract.HUMAN_WRENCH)
+        self._phases = Polled(node, contract.PHASE, qos_profile=contract.PHASE.qos)
+        self._episodes = Polled(node, contract.EPISODE, qos_profile=contract.EPISODE.qos)
+        self._keys = KeyPublisher(node)
+        self._background = Background(node)
+        self._diagnostics = Diagnostics(node, POLICY_PERIOD)
+        self._phase = ''
+        self._episode = 0
+        self._stamp_ns = 0
+        self._started_ns = 0
+        self._q: np.ndarray | None = None
+        self._m_y_human = 0.0
+
+    def run(self, stop: Stop) -> None:
+        """Watch, and press keys, until told to stop."""
+        while not stop.requested:
+            ball = self._balls.wait(0.05)
+            if ball is not None and to_ns(ball.header.stamp) % PERIOD_NS == 0:
+                self._watch(ball)
+            self._keys.update(self._stamp_ns)
+            if ball is None:
+                self._diagnostics.skip()
+                self._background.poll()
+            if self._diagnostics.due():
+                self._background.poll()
+                self._diagnostics.publish({}, phase=self._phase, presses=self._keys.presses)
+
+    def _watch(self, ball: contract.Odometry) -> None:
+        """One look at the tray."""
+        self._diagnostics.tick()
+        self._follow_lesson(to_ns(ball.header.stamp))
+        if (joints := self._joints.take()) is not None:
+            self._q = joint_positions(joints)
+        if (wrench := self._human.take()) is not None:
+            self._m_y_human = wrench.wrench.torque.y
+        if self._phase != 'teach' or self._q is None:
+            return
+        position, velocity = ball.pose.pose.position, ball.twist.twist.linear
+        picture = self._tutor.look(PlantState(
+            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), 0.0, 0.0))
+        key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._m_y_human)
+        if key is not None:
+            self._keys.press(key, self._stamp_ns)
+
+    def _follow_lesson(self, stamp_ns: int) -> None:
+        """Begin anew with every episode, and when the simulator was started anew."""
+        before = self._phase, self._episode
+        while (message := self._phases.take()) is not None:
+            self._phase = message.data
+        while (message := self._episodes.take()) is not None:
+            self._episode = message.data
+        if (self._phase, self._episode) != before or stamp_ns < self._stamp_ns:
+            self._tutor.reset(episode_seed(self._seed, self._episode))
+            self._started_ns = stamp_ns
+        self._stamp_ns = stamp_ns
+
+    def close(self) -> None:
+        """Hands off."""
+        self._keys.release(self._stamp_ns)
+        self._background.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(SimTutorNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())
