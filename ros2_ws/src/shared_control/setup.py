@@ -6,11 +6,15 @@ setup(
     name=package_name,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
+    package_data={'shared_control.session': ['page.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
     ],
-    install_requires=['panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors', 'matplotlib'],
+    install_requires=[
+        'panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
+        'rosbags', 'matplotlib', 'jinja2', 'pyyaml',
+    ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='shared-control maintainers',

@@ -231,6 +231,7 @@ class PandaSimNode:
     def close(self) -> None:
         """Publish the figures of the whole run and free the physics server."""
         self._report()
+        self._states.flush()
         self._background.close()
         self._world.close()
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 from nav_msgs.msg import Odometry
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -30,8 +31,8 @@ class StatePublisher:
         self._ball = Odometry(child_frame_id=contract.BALL_FRAME)
         self._ball.header.frame_id = contract.BASE_FRAME
         self._clock = Clock()
-        self._publish_joints = node.create_publisher(
-            contract.JOINT_STATES.msg_type, contract.JOINT_STATES.name, contract.JOINT_STATES.qos).publish
+        self._joints_publisher = node.create_publisher(
+            contract.JOINT_STATES.msg_type, contract.JOINT_STATES.name, contract.JOINT_STATES.qos)
         self._publish_ball = node.create_publisher(
             contract.BALL.msg_type, contract.BALL.name, contract.BALL.qos).publish
         self._publish_clock = node.create_publisher(
@@ -46,7 +47,7 @@ class StatePublisher:
         set_ns(self._joints.header.stamp, stamp_ns)
         self._position[:], self._velocity[:] = self._world.joint_state()
         self._effort[:] = self._world.effort
-        self._publish_joints(self._joints)
+        self._joints_publisher.publish(self._joints)
         if with_ball:
             self._fill_ball(stamp_ns)
             self._publish_ball(self._ball)
@@ -58,3 +59,7 @@ class StatePublisher:
         pose.position.x, pose.position.y, pose.position.z = position
         twist.linear.x, twist.linear.y, twist.linear.z = velocity
         twist.angular.x, twist.angular.y, twist.angular.z = spin
+
+    def flush(self) -> None:
+        """Wait a moment until everybody has what was sent: a recorder may lag behind."""
+        self._joints_publisher.wait_for_all_acked(Duration(seconds=1))

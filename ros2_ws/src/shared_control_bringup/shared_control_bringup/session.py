@@ -107,9 +107,10 @@ def _parameters(settings: dict[str, Any], folder: SessionFolder, shows_screen: b
 
 def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) -> tuple[bool, int]:
     """Run the graph until the agent is done or somebody stops it: whether it was done, and restarts of nodes."""
-    names = ['session_recorder_node', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node']
+    names = ['session_recorder_node', 'torque_ctrl_node', 'panda_sim_node', 'teleop_key_node']
     if settings['tutor'].startswith('simulated'):
         names.append('sim_tutor_node')
+    names.append('ppo_agent_node')
     nodes = [NodeProcess(name, folder.parameters, folder.logs / f'{name}.log',
                          in_foreground=shows_screen and name == 'teleop_key_node') for name in names]
     log = (folder.logs / 'session.log').open('a')

@@ -30,11 +30,10 @@ class Supervisor:
         self._restarts: list[float] = []
 
     def start(self) -> None:
-        """Start all nodes; the first one, which hears all others, is ready before they begin."""
-        self._nodes[0].start()
-        self._nodes[0].wait_ready(READY_SECONDS)
-        for node in self._nodes[1:]:
+        """Start the nodes, one after the other is ready: who listens is there before who speaks."""
+        for node in self._nodes:
             node.start()
+            node.wait_ready(READY_SECONDS)
 
     def poll(self) -> bool:
         """Look after the nodes once; False when the leader has finished.

@@ -133,10 +133,14 @@ class Observer:
         self._inputs.append((Polled(self.node, topic, qos_profile=profile), messages))
         return messages
 
-    def _serve(self, timeout: float) -> None:
+    def take_all(self) -> None:
+        """Move what waits into the lists, and serve nothing else."""
         for polled, messages in self._inputs:
             while (message := polled.take()) is not None:
                 messages.append(message)
+
+    def _serve(self, timeout: float) -> None:
+        self.take_all()
         self._executor.spin_once(timeout_sec=timeout)
 
     def publisher(self, topic: Topic) -> Any:
