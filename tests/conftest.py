@@ -1,3 +1,135 @@
-"""Fixtures of this folder."""
+"""Fixtures of this folder: whole sessions in processes of their own, in a terminal or without one."""
 
+import fcntl
+import json
+import os
+import pty
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from shared_control_bringup import parameters
+from shared_control_ros.processes import leave_with_the_parent
 from shared_control_ros.testing import *  # noqa: F403
+
+COMMAND = [sys.executable, '-m', 'shared_control', 'session']
+
+
+class Session:
+    """``shared-control session`` with ``arguments``, without a terminal."""
+
+    def __init__(self, arguments: list[str], **popen):
+        popen = {'stdin': subprocess.DEVNULL, 'start_new_session': True, 'preexec_fn': leave_with_the_parent} | popen
+        self.process = subprocess.Popen(
+            [*COMMAND, *arguments], text=True, **({'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT} | popen))
+
+    def node(self, name: str) -> int:
+        """The process id of a node; 0 while it does not run."""
+        children = Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
+        for child in children:
+            command = Path(f'/proc/{child}/cmdline')
+            if command.exists() and f'{name}.node' in command.read_text().split('\0'):
+                return int(child)
+        return 0
+
+    def output(self, timeout: float = 150.0) -> str:
+        """Wait for its end; what it said."""
+        return self.process.communicate(timeout=timeout)[0]
+
+    def close(self) -> None:
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            try:
+                self.process.wait(40)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        if self.process.stdout:
+            self.process.stdout.close()
+
+
+class TerminalSession(Session):
+    """The same in a terminal of 80 x 24."""
+
+    def __init__(self, arguments: list[str]):
+        self._master, terminal = pty.openpty()
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
+        self.shown = ''
+        super().__init__(arguments, stdin=terminal, stdout=terminal, stderr=terminal, start_new_session=False,
+                         preexec_fn=lambda: os.login_tty(terminal))
+        os.close(terminal)
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        try:
+            while data := os.read(self._master, 65536):
+                self.shown += data.decode(errors='replace')
+        except OSError:
+            pass  # the last process has left the terminal
+
+    def type(self, keys: bytes) -> None:
+        os.write(self._master, keys)
+
+    def expect(self, text: str, timeout: float = 60.0) -> None:
+        """Wait until ``text`` is shown from now on."""
+        seen, deadline = len(self.shown), time.monotonic() + timeout
+        while text not in self.shown[seen:]:
+            assert time.monotonic() < deadline, f'{text!r} is not on the screen; last: {self.shown[-2000:]!r}'
+            assert self.process.poll() is None, f'the session ended: {self.shown[-2000:]}'
+            time.sleep(0.02)
+
+    def close(self) -> None:
+        super().close()
+        self._reader.join(5)
+        os.close(self._master)
+
+
+@pytest.fixture
+def unpaced(tmp_path) -> Path:
+    """A parameter file for sessions that need not last as long as they would in real time."""
+    content = parameters.load()
+    content['panda_sim_node']['paced'] = False
+    content['ppo_agent_node']['test_episodes'] = 1
+    path = tmp_path / 'unpaced.yaml'
+    parameters.save(content, path)
+    return path
+
+
+@pytest.fixture
+def start_session(domain_id, tmp_path):
+    """``start_session(*arguments, terminal=False)``: a session that is ended with the test."""
+    sessions = []
+
+    def start(*arguments: object, terminal: bool = False):
+        kind = TerminalSession if terminal else Session
+        sessions.append(kind([str(argument) for argument in arguments]))
+        return sessions[-1]
+
+    yield start
+    for session in sessions:
+        session.close()
+
+
+@pytest.fixture
+def wait_until():
+    """``wait_until(condition, what)``"""
+    def wait(condition, what: str, timeout: float = 90.0) -> None:
+        deadline = time.monotonic() + timeout
+        while not condition():
+            assert time.monotonic() < deadline, f'waited {timeout} s in vain for {what}'
+            time.sleep(0.1)
+
+    return wait
+
+
+@pytest.fixture
+def summary_of():
+    """The figures of a session's folder."""
+    return lambda folder: json.loads((folder / 'summary.json').read_text())

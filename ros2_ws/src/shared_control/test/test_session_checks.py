@@ -81,9 +81,9 @@ def test_a_moment_that_nobody_asked_for(recording, tmp_path, error):
 
 
 def test_a_message_taken_up_too_late(recording, tmp_path):
-    """The agent's message of tick 2000 counts from 2003 on; here the one before it counts 40 ms longer."""
+    """The agent's message of tick 2000 counts from 2003 on; here the one before it counts 140 ms longer."""
     before = applied_at(recording, 2000).wrench.torque.y
-    for tick in (2003, 2010, 2020, 2023, 2030, 2040):
+    for tick in (*range(2003, 2143, 20), *range(2010, 2150, 10)):
         applied_at(recording, tick).wrench.torque.y = before
     assert any('M_y is not' in finding for finding in findings(recording, tmp_path))
 

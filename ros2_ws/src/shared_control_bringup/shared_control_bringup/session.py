@@ -11,11 +11,9 @@ from typing import Any
 from shared_control.human.profiles import PROFILES
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.session.folder import SessionFolder
-from shared_control.session.report import write_report
 from session_recorder_node.recovery import recover
 
 from . import parameters as ros_parameters
-from .aftermath import describe_policy, tell_summary, test_policy
 from .node_process import NodeProcess
 from .progress import EpisodePrinter
 from .supervisor import SessionError, Supervisor
@@ -59,6 +57,10 @@ def run(args: argparse.Namespace) -> int:
 
     print(f'Session in {folder.path}: {settings["preset"]}, tutor: {settings["tutor"]}.', flush=True)
     finished, restarts = _teach(settings, folder, shows_screen)
+    # Imported late: torch and matplotlib take seconds, and the person wants to begin.
+    from shared_control.session.report import write_report
+
+    from .aftermath import describe_policy, tell_summary, test_policy
     if folder.bag.exists():
         recover(folder.bag)
     describe_policy(folder)

@@ -50,16 +50,6 @@ class Bag:
     statuses: dict[str, list[Status]]
     """Reports on /diagnostics, by the name of the node."""
 
-    def robot_ns(self, received_ns: np.ndarray) -> np.ndarray:
-        """The robot's time at moments of the recorder's clock, ns, from the joint states around them."""
-        joints = self.joint_states
-        if not len(joints.stamp_ns):
-            return np.asarray(received_ns)
-        first_received, first_stamp = joints.received_ns[0], joints.stamp_ns[0]
-        return first_stamp + np.interp(  # relative, since a double is too short for ns since 1970
-            received_ns - first_received, joints.received_ns - first_received,
-            joints.stamp_ns - first_stamp).astype(np.int64)
-
 
 def read_bag(path: Path) -> Bag:
     """Read a bag: a rosbag2 folder or a single MCAP file.

@@ -2,10 +2,12 @@
 
 The controller takes the newest moment of human and of agent at every tick, and publishes the sum whenever it changes
 and every ten ticks. A bag does not say which two messages a sum was made of. So this looks for a way to explain every
-applied moment by one message of each source, such that no source ever goes back to an older message and each message
-is taken up within ``LATENCY`` of its arrival.
+applied moment by one message of each source, such that no source ever goes back to an older message and none is taken
+up later than the controller would accept it. It goes by the stamps, the robot's time: when a message reached the
+recorder tells little on a busy machine, where one may be sent again and come seconds late.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,9 +18,8 @@ from .bag import Bag
 from .recorded import Wrenches
 from .topics import BASE_FRAME
 
-LATENCY = 0.02
-"""s of the robot's time: by this much at the most the controller may get a message later, or earlier, than the
-recorder. Under load 0.002 s is enough."""
+AHEAD = 0.02
+"""s: a stamp may be this much ahead of the tick that the message is applied at; the clock goes out at 100 Hz."""
 SETTLING = 1.0
 """After its start the controller may not have heard of a source for this long, s."""
 SILENCE = 0.2
@@ -61,8 +62,8 @@ def find_mismatches(bag: Bag, moment_limit: float, command_timeout: float) -> It
             frontier = [(_NONE, _NONE)]
             settled_ns = stamp_ns + round(SETTLING * 1e9)
         settling = stamp_ns < settled_ns
-        agent_indices, agent_moments = agent.candidates(tick, stamp_ns, settling)
-        human_indices, human_moments = human.candidates(tick, stamp_ns, settling)
+        agent_indices, agent_moments = agent.candidates(stamp_ns, settling)
+        human_indices, human_moments = human.candidates(stamp_ns, settling)
         sums = np.clip(np.add.outer(agent_moments, human_moments), -moment_limit, moment_limit)
         explanations = [
             (agent_indices[i], human_indices[j])
@@ -79,29 +80,25 @@ class _Source:
     """The messages of one source that the controller may have taken up at a tick."""
 
     def __init__(self, bag: Bag, wrenches: Wrenches, timeout: float):
-        arrived_ns = bag.robot_ns(wrenches.received_ns)
-        age = (arrived_ns - wrenches.stamp_ns) * 1e-9
-        usable = ((wrenches.frame == BASE_FRAME) & np.isfinite(wrenches.m_y) & (np.abs(age) < timeout + LATENCY))
+        usable = (wrenches.frame == BASE_FRAME) & np.isfinite(wrenches.m_y)
         started_ns = wrenches.received_ns[_after_silence(wrenches.received_ns)]
         next_start = np.append(started_ns, 2**63 - 1)[np.searchsorted(started_ns, bag.applied.received_ns)]
         self.joining = next_start - bag.applied.received_ns < JOINING * 1e9
         """(ticks,): the source has started, but the recorder has not heard it yet."""
         self._timeout = timeout
-        self._m_y = wrenches.m_y[usable].tolist()
-        self._stamps_ns = wrenches.stamp_ns[usable].tolist()
-        # The controller drops a message that is too old or too new when it comes. Whether one that is nearly so was
-        # dropped cannot be told; it may, but need not have been taken up.
-        certain = np.flatnonzero(np.abs(age[usable]) < timeout - LATENCY)
-        seen_ns = bag.robot_ns(bag.applied.received_ns)
-        latency_ns = round(LATENCY * 1e9)
-        newest_for_certain = np.searchsorted(arrived_ns[usable][certain], seen_ns - latency_ns, 'right')
-        self._first = np.append(_NONE, certain)[newest_for_certain].tolist()
-        self._end = np.searchsorted(arrived_ns[usable], seen_ns + latency_ns, 'right').tolist()
+        # By stamp, so that one that is wrong by far, which the controller drops, stands where it disturbs nobody.
+        order = np.flatnonzero(usable)[np.argsort(wrenches.stamp_ns[usable], kind='stable')]
+        self._m_y = wrenches.m_y[order].tolist()
+        self._stamps_ns = wrenches.stamp_ns[order].tolist()
 
-    def candidates(self, tick: int, now_ns: int, settling: bool) -> tuple[list[int], list[float]]:
-        """Indices of messages, and the moment that each amounts to at ``now_ns``, N m."""
-        first = self._first[tick]
-        indices = list(range(max(first, 0), self._end[tick]))
+    def candidates(self, now_ns: int, settling: bool) -> tuple[list[int], list[float]]:
+        """Indices of messages, and the moment that each amounts to at ``now_ns``, N m.
+
+        The oldest is the newest that is too old to be accepted now: it may still be the last one that was.
+        """
+        first = bisect_right(self._stamps_ns, now_ns - round(self._timeout * 1e9)) - 1
+        end = bisect_right(self._stamps_ns, now_ns + round(AHEAD * 1e9))
+        indices = list(range(max(first, 0), end))
         moments = [self._m_y[index] * freshness((now_ns - self._stamps_ns[index]) * 1e-9, self._timeout)
                    for index in indices]
         if settling or first == _NONE:
