@@ -5,6 +5,7 @@ import json
 import signal
 import sys
 import time
+from enum import Enum
 from pathlib import Path
 from typing import Any
 
@@ -56,20 +57,29 @@ def run(args: argparse.Namespace) -> int:
     folder.settings.write_text(json.dumps(settings, indent=2) + '\n')
 
     print(f'Session in {folder.path}: {settings["preset"]}, tutor: {settings["tutor"]}.', flush=True)
-    finished, restarts = _teach(settings, folder, shows_screen)
+    end, restarts = _teach(settings, folder, shows_screen)
     # Imported late: torch and matplotlib take seconds, and the person wants to begin.
     from shared_control.session.report import write_report
 
     from .aftermath import describe_policy, tell_summary, test_policy
     if folder.bag.exists():
         recover(folder.bag)
-    describe_policy(folder)
-    if finished and settings['test_episodes']:
+    if end is not End.FAILED:
+        describe_policy(folder)
+    if end is End.DONE and settings['test_episodes']:
         test_policy(folder, settings['test_episodes'])
     tell_summary(folder, write_report(folder, restarts))
-    if not finished:
+    if end is not End.DONE:
         print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}')
-    return 0 if finished else 130
+    return end.value
+
+
+class End(Enum):
+    """How the teaching ended; the value is the exit code."""
+
+    DONE = 0
+    FAILED = 1
+    STOPPED = 130
 
 
 def _new(args: argparse.Namespace) -> tuple[SessionFolder, dict[str, Any]]:
@@ -107,8 +117,8 @@ def _parameters(settings: dict[str, Any], folder: SessionFolder, shows_screen: b
     return parameters
 
 
-def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) -> tuple[bool, int]:
-    """Run the graph until the agent is done or somebody stops it: whether it was done, and restarts of nodes."""
+def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) -> tuple[End, int]:
+    """Run the graph until the agent is done or somebody stops it: how it ended, and restarts of nodes."""
     names = ['session_recorder_node', 'torque_ctrl_node', 'panda_sim_node', 'teleop_key_node']
     if settings['tutor'].startswith('simulated'):
         names.append('sim_tutor_node')
@@ -125,14 +135,17 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
     supervisor = Supervisor(nodes, 'ppo_agent_node', say)
     episodes = EpisodePrinter(folder.episodes, say)
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
+    error: SessionError | None = None
     try:
         supervisor.start()
         while supervisor.poll():
             episodes.poll()
             time.sleep(POLL_SECONDS)
-        finished = True
+        end = End.DONE
     except KeyboardInterrupt:
-        finished = False
+        end = End.STOPPED
+    except SessionError as problem:
+        end, error = End.FAILED, problem
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         supervisor.stop()
@@ -141,7 +154,9 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
         for number, handler in previous.items():
             signal.signal(number, handler)
         log.close()
-    return finished, supervisor.restarts
+    if error is not None:
+        print(f'shared-control: {error}', file=sys.stderr)
+    return end, supervisor.restarts
 
 
 def _interrupt(*_: object) -> None:

@@ -27,7 +27,7 @@ class Supervisor:
         self._nodes = nodes
         self._leader = leader
         self._say = say
-        self._restarts: list[float] = []
+        self._deaths: dict[str, list[float]] = {}
 
     def start(self) -> None:
         """Start the nodes, one after the other is ready: who listens is there before who speaks."""
@@ -54,11 +54,11 @@ class Supervisor:
 
     def _restart(self, node: NodeProcess, code: int) -> None:
         now = time.monotonic()
-        self._restarts = [t for t in self._restarts if now - t < 60.0] + [now]
-        if len(self._restarts) > MAX_RESTARTS_A_MINUTE:
+        deaths = self._deaths[node.name] = [t for t in self._deaths.get(node.name, []) if now - t < 60.0] + [now]
+        if len(deaths) > MAX_RESTARTS_A_MINUTE:
             raise SessionError(
-                f'nodes died {len(self._restarts)} times within a minute, last {node.name} ({_meaning(code)}): '
-                f'{node.last_error()}; see {node.log}')
+                f'{node.name} died {len(deaths)} times within a minute ({_meaning(code)}): {node.last_error()}; '
+                f'see {node.log}')
         self._say(f'{node.name} died ({_meaning(code)}); starting it again')
         node.start()
 
