@@ -1,7 +1,6 @@
 """The plant of an environment, reached through the topics of the graph."""
 
 import math
-import struct
 import time
 from collections.abc import Callable
 
@@ -15,14 +14,15 @@ from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted, PlantStat
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
+from shared_control_ros.serialized import stamp_of
 from shared_control_ros.stamps import set_ns, to_ns
 
 from .simulator import Simulator
 from .wrench_track import WrenchTrack
 
 PERIOD_NS = round(POLICY_PERIOD * 1e9)
-JUMP_NS = 500_000_000
-"""A gap in the stamps that is longer, or any step back, means that the simulator was started anew."""
+GAP_NS = 1_000_000_000
+"""An episode may miss as much when the machine is busy, not more."""
 JOINTS_SECONDS = 0.5
 """How long the joints of a ball's stamp may be overdue, s; they are sent before it."""
 COMMAND_TIMEOUT = 0.1
@@ -36,7 +36,7 @@ class GraphPlant:
     ``/joint_states`` of the same stamp; the moment that answers it carries its stamp, too.
 
     A graph that stands still (paused by a person, or without its controller) is waited for: its time stands still,
-    too. One whose stamps jump was started anew: :class:`PlantInterrupted`.
+    too. When the simulator was started anew, the episode is void: :class:`PlantInterrupted`.
 
     Args:
         node: the agent's node.
@@ -57,6 +57,7 @@ class GraphPlant:
         self._wrench = WrenchStamped()
         self._wrench.header.frame_id = contract.BASE_FRAME
         self._stamp_ns = 0
+        self._last_number = 0
         self.late_steps = 0
         """Policy ticks that came and went while the agent was busy."""
 
@@ -76,6 +77,7 @@ class GraphPlant:
             queue.clear()
         self._human.clear()
         self._applied.clear()
+        self._last_number = 0
         self._simulator.pause(False, self._attend)
         ball = self._next_ball()
         return self._read(ball, to_ns(ball.header.stamp))
@@ -86,9 +88,8 @@ class GraphPlant:
         started_ns = self._stamp_ns
         ball = self._next_ball()
         step_ns = to_ns(ball.header.stamp) - started_ns
-        if not 0 < step_ns <= JUMP_NS:
-            raise PlantInterrupted(f'the stamps on {self._balls.topic_name} jumped by {step_ns * 1e-9:.3f} s: '
-                                   'the simulator was started anew')
+        if not 0 < step_ns <= GAP_NS:
+            raise PlantInterrupted(f'the stamps on {self._balls.topic_name} jumped by {step_ns * 1e-9:.3f} s')
         self.late_steps += step_ns // PERIOD_NS - 1
         return self._read(ball, started_ns)
 
@@ -117,17 +118,24 @@ class GraphPlant:
         silent_since = time.monotonic()
         while newest is None:
             self._attend()
-            ball = self._balls.wait(0.05)
-            while ball is not None:
+            self._balls.wait_ready(0.05)
+            while (taken := self._balls.take_with_info()) is not None:
+                ball, info = taken
+                self._check_sender(info['publication_sequence_number'])
                 stamp_ns = to_ns(ball.header.stamp)
                 if stamp_ns % PERIOD_NS == 0 and stamp_ns != self._stamp_ns and self._is_usable(ball):
                     newest = ball
-                ball = self._balls.take()
             if time.monotonic() - silent_since > 1.0:
                 self._node.get_logger().info(
                     f'{self._balls.topic_name} has been silent for {time.monotonic() - silent_since:.0f} s: paused, or '
                     'waiting for torque_ctrl_node', throttle_duration_sec=5.0)
         return newest
+
+    def _check_sender(self, number: int) -> None:
+        """A publisher numbers its messages from 1."""
+        if number <= self._last_number:
+            raise PlantInterrupted(f'{self._balls.topic_name} has a new publisher: the simulator was started anew')
+        self._last_number = number
 
     def _is_usable(self, ball: Odometry) -> bool:
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
@@ -151,18 +159,17 @@ class GraphPlant:
         """Joint positions at a tick, (7,), rad."""
         deadline = time.monotonic() + JOINTS_SECONDS
         while time.monotonic() < deadline:
-            serialized = self._joints.wait(0.05)
-            if serialized is not None and _stamp_of(serialized) == stamp_ns:
-                return joint_positions(deserialize_message(serialized, contract.JOINT_STATES.msg_type))
+            serialized = self._joints.take()
+            if serialized is None:
+                self._joints.wait_ready(0.05)
+            elif stamp_of(serialized) == stamp_ns:
+                try:
+                    return joint_positions(deserialize_message(serialized, contract.JOINT_STATES.msg_type))
+                except ValueError as error:
+                    raise PlantInterrupted(f'{self._joints.topic_name}: {error}') from error
         raise PlantInterrupted(f'no {self._joints.topic_name} with the stamp of {self._balls.topic_name}')
 
     def close(self) -> None:
         """Leave no moment behind."""
         if self._stamp_ns:
             self._publish(0.0)
-
-
-def _stamp_of(serialized: bytes) -> int:
-    """Stamp of a serialized message that begins with a Header, ns: most of a 1 kHz topic is not worth more."""
-    seconds, nanoseconds = struct.unpack_from('<iI', serialized, 4)  # after the 4 bytes of the CDR encapsulation
-    return seconds * 1_000_000_000 + nanoseconds

@@ -16,7 +16,7 @@ from shared_control.learning.episode_ppo import EpisodePPO
 from shared_control.learning.episode_table import EpisodeTable
 from shared_control.learning.evaluate import TEST_SECONDS, evaluate, test_settings
 from shared_control.learning.hooks import Hooks
-from shared_control.learning.learn import learn, make_learner
+from shared_control.learning.learn import learn, make_learner, warm_up
 from shared_control.learning.policy_file import PolicyFileError, load_policy, save_policy
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.learning.record import EpisodeRecord
@@ -71,6 +71,7 @@ class PpoAgentNode(Hooks):
             if not self._test_episodes:
                 raise ParameterError("parameter 'test_episodes' must be at least 1 in mode 'test'")
             self._learner = _load(Path(policy), 'policy')
+        warm_up(self._learner.preset)
         self._seconds_left = minutes * 60.0
         self._finish = False
         self._training = TrainingTopics(node)

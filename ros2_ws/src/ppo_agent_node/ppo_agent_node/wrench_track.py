@@ -2,12 +2,12 @@
 
 import math
 
-from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
 
 from shared_control_ros.contract import BASE_FRAME, Topic
 from shared_control_ros.fast_loop import Polled
-from shared_control_ros.stamps import to_ns
+from shared_control_ros.serialized import stamp_of
 
 
 class WrenchTrack:
@@ -20,7 +20,8 @@ class WrenchTrack:
     """
 
     def __init__(self, node: Node, topic: Topic, timeout: float | None = None):
-        self._input = Polled(node, topic, depth=topic.qos.depth)
+        self._input = Polled(node, topic, depth=topic.qos.depth, raw=True)
+        self._type = topic.msg_type
         self._timeout_ns = math.inf if timeout is None else timeout * 1e9
         self.clear()
 
@@ -31,17 +32,21 @@ class WrenchTrack:
     def clear(self) -> None:
         """Forget everything, what waits included."""
         self._input.clear()
-        self._next: WrenchStamped | None = None
+        self._next: bytes | None = None
         self._m_y = 0.0
         self._stamp_ns = 0
 
     def at(self, stamp_ns: int) -> float:
         """The newest moment stamped ``stamp_ns`` or earlier, N m. Stamps must not run backwards."""
-        while (message := self._next or self._input.take()) is not None:
-            self._next = message if to_ns(message.header.stamp) > stamp_ns else None
-            if self._next is not None:
+        newest = None
+        while (serialized := self._next or self._input.take()) is not None:
+            if stamp_of(serialized) > stamp_ns:
                 break
+            newest, self._next = serialized, None
+        self._next = serialized
+        if newest is not None:
+            message = deserialize_message(newest, self._type)
             if message.header.frame_id == BASE_FRAME and math.isfinite(message.wrench.torque.y):
                 self._m_y = message.wrench.torque.y
-                self._stamp_ns = to_ns(message.header.stamp)
+                self._stamp_ns = stamp_of(newest)
         return self._m_y if stamp_ns - self._stamp_ns <= self._timeout_ns else 0.0

@@ -12,7 +12,7 @@ from shared_control_ros.stamps import set_ns
 SOURCE = 'tutor'
 HELD_SECONDS = 0.06
 """How long a press lasts, s."""
-REPEAT_SECONDS = 0.09
+REPEAT_SECONDS = 0.05
 """The state of the keys is repeated when nothing happened for so long, s."""
 
 

@@ -4,6 +4,8 @@ Takes /ball, /joint_states and /human/target_wrench, and /training/phase and /tr
 person: it sees late and inexactly, and presses keys. In any phase but ``teach`` it keeps its hands off.
 """
 
+import math
+
 import numpy as np
 from rclpy.node import Node
 
@@ -67,17 +69,30 @@ class SimTutorNode:
         self._diagnostics.tick()
         self._follow_lesson(to_ns(ball.header.stamp))
         if (joints := self._joints.take()) is not None:
-            self._q = joint_positions(joints)
+            try:
+                self._q = joint_positions(joints)
+            except ValueError as error:
+                self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:
-            self._m_y_human = wrench.wrench.torque.y
+            if math.isfinite(wrench.wrench.torque.y):
+                self._m_y_human = wrench.wrench.torque.y
+            else:
+                self._complain(self._human, f'torque.y is {wrench.wrench.torque.y}')
         if self._phase != 'teach' or self._q is None:
             return
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
+        if not math.isfinite(position.x + velocity.x):
+            self._complain(self._balls, f'x is {position.x} m, its velocity {velocity.x} m/s')
+            return
         picture = self._tutor.look(PlantState(
             self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), 0.0, 0.0))
         key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._m_y_human)
         if key is not None:
             self._keys.press(key, self._stamp_ns)
+
+    def _complain(self, source: Polled, fault: str) -> None:
+        self.node.get_logger().error(
+            f'dropped a message on {source.topic_name}: {fault}', throttle_duration_sec=1.0)
 
     def _follow_lesson(self, stamp_ns: int) -> None:
         """Begin anew with every episode, and when the simulator was started anew."""

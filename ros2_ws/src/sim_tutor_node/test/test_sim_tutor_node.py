@@ -7,13 +7,14 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Int32, String
+
 from shared_control.human.keystrokes import Key, KeyMoment, KeyPresses
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control.world.ball_on_tray import TRAY_HOME_X
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
-from std_msgs.msg import Int32, String
 
 
 class Scene:
@@ -74,6 +75,7 @@ def test_presses_keys_only_while_the_robot_is_taught(scene):
         assert scene.show(0.15, 0.6) == []
     scene.enter('teach')
     assert scene.show(0.15, 1.5)[0] is Key.LEFT
+    scene.show(float('nan'), 0.1)
     scene.enter('teach', episode=2)
     scene.moment.release()
     assert scene.show(-0.15, 1.5)[0] is Key.RIGHT

@@ -22,7 +22,7 @@ class Corrections(NamedTuple):
     """What the policy should have done there, (n, 1)"""
 
 
-def find_corrections(episode: Episode, mean_actions: np.ndarray, coaching: CoachingSettings,
+def find_corrections(episode: Episode, means: np.ndarray, coaching: CoachingSettings,
                      action_scale: float) -> Corrections:
     """The corrections of an episode.
 
@@ -30,22 +30,22 @@ def find_corrections(episode: Episode, mean_actions: np.ndarray, coaching: Coach
     ``y = clip(pi(s_{t-d}) + g M_yh(t) / M_max)``.
 
     Args:
-        mean_actions: of the policy in the states of the episode, (steps, 1).
+        means: what the policy does in the states of the episode without exploring, (steps, 1).
         action_scale: M_max, N m.
     """
     delay = round(coaching.delay / POLICY_PERIOD)
     human = np.array(episode.m_y_human, np.float32)[delay:, None]
     corrected = np.flatnonzero(human)
-    observations = episode.observations()[:len(human)][corrected]
-    labels = mean_actions[:len(human)] + coaching.gain * human / action_scale
+    observations = np.array(episode.observations)[:len(human)][corrected]
+    labels = means[:len(human)] + coaching.gain * human / action_scale
     return Corrections(observations, np.clip(labels, -1.0, 1.0)[corrected])
 
 
 class CoachedPPO(EpisodePPO):
     """Adds ``lambda |pi(s_{t-d}) - y|^2``, meaned over the corrected states, to the loss of PPO.
 
-    Deep COACH (Arumugam et al., 2019) for the delayed corrections, PVP (Peng et al., 2023) for the regression onto
-    interventions beside the reward. Without corrections it is PPO, to the bit.
+    Corrective advice as labels of a network: COACH (Celemin and Ruiz-del-Solar, 2019) and D-COACH (Perez-Dattari et
+    al., 2018); beside a reward, as PVP (Peng et al., 2023) does. Without corrections it is PPO, to the bit.
     """
 
     _corrections: Corrections
@@ -55,8 +55,9 @@ class CoachedPPO(EpisodePPO):
         """One update from a finished episode and from its corrections."""
         coaching = self.preset.coaching
         assert coaching is not None, f'preset {self.preset.name!r} has no coaching settings'
-        self._corrections = find_corrections(
-            episode, self.mean_actions(episode.observations()), coaching, self.preset.task.action_scale)
+        with torch.no_grad():
+            means = self.means(torch.as_tensor(np.array(episode.observations))).clamp(-1.0, 1.0).numpy()
+        self._corrections = find_corrections(episode, means, coaching, self.preset.task.action_scale)
         self._weight = coaching.weight_in(self.episode + 1)
         super().learn_from(episode)
 
@@ -69,8 +70,7 @@ class CoachedPPO(EpisodePPO):
         observations, labels = map(torch.as_tensor, self._corrections)
         for _ in range(self.n_epochs):
             for batch in self.rollout_buffer.get(self.batch_size):
-                means = self.policy.get_distribution(observations).mode()
-                loss = self._ppo_loss(batch) + self._weight * mse_loss(means, labels)
+                loss = self._ppo_loss(batch) + self._weight * mse_loss(self.means(observations), labels)
                 self.policy.optimizer.zero_grad()
                 loss.backward()
                 torch.nn.utils.clip_grad_norm_(self.policy.parameters(), self.max_grad_norm)

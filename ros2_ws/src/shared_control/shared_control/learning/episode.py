@@ -3,30 +3,16 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-import torch
-from gymnasium.spaces import Box
-from stable_baselines3.common.buffers import RolloutBuffer
-
-
-@dataclass(frozen=True, eq=False)
-class Choice:
-    """What the policy chose in one state."""
-
-    observation: np.ndarray
-    """(3,), float32"""
-    action: np.ndarray
-    """As drawn, not clipped; (1,), float32"""
-    value: torch.Tensor
-    """Of the state, (1,)"""
-    log_probability: torch.Tensor
-    """Of the action, (1,)"""
 
 
 @dataclass(eq=False)
 class Episode:
-    """The steps of an episode. Action, human moment and applied moment are kept apart."""
+    """The steps of an episode. The agent's action, the human's moment and the applied moment are kept apart."""
 
-    choices: list[Choice] = field(default_factory=list)
+    observations: list[np.ndarray] = field(default_factory=list)
+    """Of each step, (3,), float32"""
+    actions: list[np.ndarray] = field(default_factory=list)
+    """As drawn, not clipped; of each step, (1,), float32"""
     rewards: list[float] = field(default_factory=list)
     """As the learner sees them, scaled."""
     m_y_human: list[float] = field(default_factory=list)
@@ -41,29 +27,11 @@ class Episode:
     def __len__(self) -> int:
         return len(self.rewards)
 
-    def add(self, choice: Choice, reward: float, m_y_human: float, m_y_applied: float) -> None:
-        """One step."""
-        self.choices.append(choice)
+    def add(self, observation: np.ndarray, action: np.ndarray, reward: float, m_y_human: float, m_y_applied: float,
+            ) -> None:
+        """One step: what was seen, what was done, and what came of it."""
+        self.observations.append(observation)
+        self.actions.append(action)
         self.rewards.append(reward)
         self.m_y_human.append(m_y_human)
         self.m_y_applied.append(m_y_applied)
-
-    def observations(self) -> np.ndarray:
-        """(steps, 3)"""
-        return np.array([choice.observation for choice in self.choices])
-
-
-def rollout_buffer(episode: Episode, last_value: torch.Tensor, observation_space: Box, action_space: Box,
-                   gamma: float, gae_lambda: float) -> RolloutBuffer:
-    """The episode as Stable-Baselines3's rollout, with advantages; as long as the episode is.
-
-    Args:
-        last_value: value of the state after the last step, (1,); counts when the episode was cut off by time.
-    """
-    buffer = RolloutBuffer(
-        len(episode), observation_space, action_space, device='cpu', gamma=gamma, gae_lambda=gae_lambda)
-    for step, (choice, reward) in enumerate(zip(episode.choices, episode.rewards, strict=True)):
-        buffer.add(choice.observation, choice.action, np.array([reward]), np.array([step == 0]),
-                   choice.value, choice.log_probability)
-    buffer.compute_returns_and_advantage(last_value, np.array([episode.terminated]))
-    return buffer

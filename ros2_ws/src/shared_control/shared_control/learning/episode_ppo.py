@@ -6,14 +6,16 @@ import gymnasium
 import numpy as np
 import torch
 from stable_baselines3 import PPO
+from stable_baselines3.common.buffers import RolloutBuffer
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.utils import set_random_seed
 
 from ..seeds import episode_seed
-from .episode import Choice, Episode, rollout_buffer
+from ..task.balance import OBSERVATION_BOUND
+from .episode import Episode
 from .presets import Preset
 
-OBSERVATION_SPACE = gymnasium.spaces.Box(-20.0, 20.0, (3,), np.float32)
+OBSERVATION_SPACE = gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (3,), np.float32)
 ACTION_SPACE = gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32)
 
 
@@ -58,32 +60,42 @@ class EpisodePPO(PPO):
         set_random_seed(self.episode_seed())
 
     @torch.no_grad()
-    def choose(self, observation: np.ndarray) -> Choice:
-        """Draw an action for ``observation`` (3,)."""
-        action, value, log_probability = self.policy(torch.as_tensor(observation).unsqueeze(0))
-        return Choice(observation, action[0].numpy(), value[0], log_probability)
+    def explore(self, observation: np.ndarray) -> np.ndarray:
+        """An action drawn for ``observation``; (3,) -> (1,), not clipped."""
+        mean = self.means(torch.as_tensor(observation))
+        return (mean + self.policy.log_std.exp() * torch.randn(1)).numpy()
 
     @torch.no_grad()
-    def mean_actions(self, observations: np.ndarray) -> np.ndarray:
-        """What the policy does without exploring, clipped to the action space; (n, 3) -> (n, 1)."""
-        means = self.policy.get_distribution(torch.as_tensor(observations)).mode()
-        return means.clamp(-1.0, 1.0).numpy()
-
     def act(self, observation: np.ndarray) -> np.ndarray:
         """The action without exploring; (3,) -> (1,)."""
-        return self.mean_actions(observation[None])[0]
+        return self.means(torch.as_tensor(observation)).clamp(-1.0, 1.0).numpy()
+
+    def means(self, observations: torch.Tensor) -> torch.Tensor:
+        """Means of the Gaussian policy, not clipped; (..., 3) -> (..., 1)."""
+        return self.policy.action_net(self.policy.mlp_extractor.forward_actor(observations))
 
     def learn_from(self, episode: Episode) -> None:
         """One update from a finished episode."""
-        assert episode.last_observation is not None, 'the episode has not ended'
-        settings = self.preset.ppo
-        with torch.no_grad():
-            last_value = self.policy.predict_values(torch.as_tensor(episode.last_observation).unsqueeze(0))
-        self.rollout_buffer = rollout_buffer(
-            episode, last_value, OBSERVATION_SPACE, ACTION_SPACE, settings.gamma, settings.gae_lambda)
+        self.rollout_buffer = self._rollout(episode)
         self.num_timesteps += len(episode)
         self.train()
         self.episode += 1
+
+    @torch.no_grad()
+    def _rollout(self, episode: Episode) -> RolloutBuffer:
+        """The episode as Stable-Baselines3 has it, with advantages; as long as the episode is."""
+        assert episode.last_observation is not None, 'the episode has not ended'
+        observations, actions = np.array(episode.observations), np.array(episode.actions)
+        values, log_probabilities, _ = self.policy.evaluate_actions(
+            torch.as_tensor(observations), torch.as_tensor(actions))
+        buffer = RolloutBuffer(len(episode), OBSERVATION_SPACE, ACTION_SPACE, device='cpu',
+                               gamma=self.gamma, gae_lambda=self.gae_lambda)
+        for step, reward in enumerate(episode.rewards):
+            buffer.add(observations[step], actions[step], np.array([reward]), np.array([step == 0]),
+                       values[step], log_probabilities[step])
+        last_value = self.policy.predict_values(torch.as_tensor(episode.last_observation).unsqueeze(0))
+        buffer.compute_returns_and_advantage(last_value, np.array([episode.terminated]))
+        return buffer
 
     def learn(self, *_: Any, **__: Any) -> 'EpisodePPO':
         """Not this way: see :func:`shared_control.learning.learn.learn`."""

@@ -2,6 +2,8 @@
 
 import time
 
+import numpy as np
+
 from ..envs.balance_env import BalanceEnv
 from ..envs.plant import PlantInterrupted
 from .coached_ppo import CoachedPPO
@@ -15,6 +17,19 @@ from .record import EpisodeRecord
 def make_learner(preset: Preset, seed: int = 0) -> EpisodePPO:
     """The learner of a preset."""
     return EpisodePPO(preset, seed) if preset.coaching is None else CoachedPPO(preset, seed)
+
+
+def warm_up(preset: Preset) -> None:
+    """Choose and learn once with a learner of no consequence.
+
+    Torch loads parts of itself when they are first used, which takes seconds: too long in a live episode.
+    """
+    learner = make_learner(preset)
+    seen = np.zeros(3, np.float32)
+    episode = Episode(last_observation=seen)
+    for _ in range(preset.ppo.batch_size):
+        episode.add(seen, learner.explore(seen), 0.0, 1.0, 1.0)
+    learner.learn_from(episode)
 
 
 def learn(learner: EpisodePPO, env: BalanceEnv, episodes: int | None = None, hooks: Hooks | None = None) -> None:
@@ -46,9 +61,10 @@ def run_episode(learner: EpisodePPO, env: BalanceEnv, record: EpisodeRecord, hoo
     episode = Episode()
     ended = False
     while not ended:
-        choice = learner.choose(observation)
-        observation, reward, terminated, truncated, info = env.step(choice.action)
-        episode.add(choice, reward, info['m_y_human'], info['m_y_applied'])
+        seen = observation
+        action = learner.explore(seen)
+        observation, reward, terminated, truncated, info = env.step(action)
+        episode.add(seen, action, reward, info['m_y_human'], info['m_y_applied'])
         record.add(info)
         hooks.stepped(record)
         ended = terminated or truncated
