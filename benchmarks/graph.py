@@ -6,7 +6,6 @@ in the meantime slows both.
 """
 
 import json
-import os
 import signal
 import statistics
 import subprocess
@@ -21,6 +20,7 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from shared_control_ros import contract
+from shared_control_ros.processes import node_environment
 
 ROUNDS = 3
 SECONDS = 8.0
@@ -31,14 +31,14 @@ def ping_pong() -> dict[str, float]:
     """p50 and p99 of the bare exchange, ms."""
     output = subprocess.run(
         [sys.executable, str(Path(__file__).with_name('pingpong.py'))], check=True, capture_output=True, text=True,
-        env={**os.environ, 'ROS_DOMAIN_ID': str(next(DOMAINS))}).stdout
+        env={**node_environment(), 'ROS_DOMAIN_ID': str(next(DOMAINS))}).stdout
     return json.loads(output.splitlines()[-1])
 
 
 def ticks(seconds: float = SECONDS) -> dict[str, float]:
     """p50 and p99 of the graph's tick, ms, as the simulator reports them after ``seconds``."""
     domain = next(DOMAINS)
-    environment = {**os.environ, 'ROS_DOMAIN_ID': str(domain)}
+    environment = {**node_environment(), 'ROS_DOMAIN_ID': str(domain)}
     nodes = [subprocess.Popen([sys.executable, '-m', f'{name}.node', '--ros-args', '-p', *parameters],
                               env=environment, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
              for name, parameters in (('panda_sim_node', ['paced:=false']), ('torque_ctrl_node', ['enabled:=true']))]

@@ -160,12 +160,12 @@ def test_a_folder_that_cannot_be_written_is_named(start_session, tmp_path):
     assert 'cannot write the session folder' in output and 'Traceback' not in output
 
 
-def test_a_corrupt_policy_ends_the_session_and_stays_as_it_is(start_session, unpaced, tmp_path):
+def test_a_corrupt_policy_ends_the_session_and_stays_as_it_is(start_session, unpaced, tmp_path, wait_until):
     folder = tmp_path / 'session'
     session = start_session('--tutor', 'sim', '--episodes', 1, '--params-file', unpaced, '--output', folder)
+    wait_until((folder / 'settings.json').exists, 'the settings')
     session.process.send_signal(signal.SIGINT)
     session.output()
-    (folder / 'learner').mkdir(parents=True, exist_ok=True)
     policy = folder / 'learner' / 'policy.safetensors'
     policy.write_bytes(b'not a policy')
     session = start_session('--resume', folder)

@@ -1,12 +1,9 @@
 """Processes and traffic for the tests of the recorder: real nodes over real DDS, each test in a domain of its own."""
 
-import fcntl
 import os
-import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,6 +15,9 @@ from rclpy.serialization import serialize_message
 
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
+from shared_control_ros.testing import domain_id
+
+__all__ = ['domain_id']
 
 TRAFFIC = (
     (contract.JOINT_STATES, 1), (contract.EFFORT_COMMANDS, 1), (contract.BALL, 10), (contract.CLOCK, 10),
@@ -31,20 +31,9 @@ def full_name(topic: Topic) -> str:
 
 
 @pytest.fixture
-def ros_domain(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+def ros_domain(domain_id: int) -> int:
     """A DDS domain that no other test on this machine uses meanwhile."""
-    for domain in random.sample(range(1, 101), 100):
-        with (Path(tempfile.gettempdir()) / f'shared_control_domain_{domain}.lock').open('w') as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            monkeypatch.setenv('ROS_DOMAIN_ID', str(domain))
-            monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-            monkeypatch.setenv('OMP_NUM_THREADS', '1')
-            yield domain
-            return
-    pytest.fail('no free ROS domain')
+    return domain_id
 
 
 class Recorder:

@@ -1,13 +1,12 @@
 """One node of the graph as a process."""
 
-import os
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
-from shared_control_ros.processes import leave_with_the_parent
+from shared_control_ros.processes import leave_with_the_parent, node_environment
 
 UNUSABLE = 2
 """Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
@@ -80,8 +79,3 @@ class NodeProcess:
         lines = [line.strip() for line in self.log.read_text(errors='replace').splitlines() if line.strip()]
         errors = [line for line in lines if 'error' in line.lower()]
         return (errors or lines or ['no output'])[-1]
-
-
-def node_environment() -> dict[str, str]:
-    """The environment of the nodes: one thread each, and DDS on this machine only unless told otherwise."""
-    return {'OMP_NUM_THREADS': '1', 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST', 'PYTHONUNBUFFERED': '1', **os.environ}

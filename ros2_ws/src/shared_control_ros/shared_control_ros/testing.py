@@ -23,7 +23,7 @@ from rclpy.node import Node
 
 from .contract import Topic
 from .fast_loop import Polled
-from .processes import leave_with_the_parent
+from .processes import leave_with_the_parent, node_environment
 
 __all__ = ['domain_id', 'observer', 'start_node']
 
@@ -42,9 +42,8 @@ def domain_id() -> Iterator[int]:
             lock.close()
             continue
         with lock, pytest.MonkeyPatch.context() as monkeypatch:
-            monkeypatch.setenv('ROS_DOMAIN_ID', str(candidate))
-            monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
-            monkeypatch.setenv('OMP_NUM_THREADS', '1')
+            for variable, value in {**node_environment(), 'ROS_DOMAIN_ID': str(candidate)}.items():
+                monkeypatch.setenv(variable, value)
             yield candidate
         return
     raise RuntimeError('all ROS domains are in use by other tests')
