@@ -48,7 +48,7 @@ bench: setup
 	$(BIN)/python benchmarks/bench.py --output out/bench.json
 
 colcon: setup
-	PYTHON=$(BIN)/python tools/colcon.sh
+	PYTHON=$(BIN)/python tools/colcon.sh $(ARGS)
 
 clean:
 	rm -rf $(VENV) ros2_ws/build ros2_ws/install ros2_ws/log

@@ -19,7 +19,8 @@ def missing():
     if importlib.util.find_spec('ensurepip') is None:
         found.append("Python's venv module is incomplete: apt-get install python3-venv")
     if sys.version_info[:2] == (3, 12) and shutil.which('g++') is None:
-        found.append('A C++ compiler is needed, as PyBullet has no wheel for Python 3.12: apt-get install g++ python3-dev')
+        found.append('A C++ compiler is needed, as PyBullet has no wheel for Python 3.12: '
+                     'apt-get install g++ python3-dev')
     return found
 
 

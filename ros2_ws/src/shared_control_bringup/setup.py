@@ -14,7 +14,10 @@ setup(
         ('share/' + package_name, ['package.xml']),
         ('share/' + package_name + '/config', glob(package_name + '/config/*')),
     ],
-    install_requires=['shared_control', 'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node', 'sim_tutor_node', 'session_recorder_node', 'pyyaml'],
+    install_requires=[
+        'shared_control', 'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node',
+        'ppo_agent_node', 'sim_tutor_node', 'session_recorder_node', 'pyyaml',
+    ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='shared-control maintainers',

@@ -16,6 +16,6 @@ setup(
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',
-    description='What the nodes of the shared-control graph have in common: contract, 1 kHz receive loop, parameters, diagnostics.',
+    description='What the nodes of the graph share: contract, 1 kHz receive loop, parameters, diagnostics.',
     license='Apache-2.0',
 )

@@ -12,7 +12,7 @@ from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 
 TICKS_PER_BALL = 10
-"""The ball's odometry and the clock go out at 100 Hz."""
+"""The ball's odometry, the clock and the throttled joint states go out at 100 Hz."""
 
 
 class StatePublisher:
@@ -33,6 +33,9 @@ class StatePublisher:
         self._clock = Clock()
         self._joints_publisher = node.create_publisher(
             contract.JOINT_STATES.msg_type, contract.JOINT_STATES.name, contract.JOINT_STATES.qos)
+        self._publish_throttled = node.create_publisher(
+            contract.JOINT_STATES_THROTTLE.msg_type, contract.JOINT_STATES_THROTTLE.name,
+            contract.JOINT_STATES_THROTTLE.qos).publish
         self._publish_ball = node.create_publisher(
             contract.BALL.msg_type, contract.BALL.name, contract.BALL.qos).publish
         self._publish_clock = node.create_publisher(
@@ -49,6 +52,7 @@ class StatePublisher:
         self._effort[:] = self._world.effort
         self._joints_publisher.publish(self._joints)
         if with_ball:
+            self._publish_throttled(self._joints)
             self._fill_ball(stamp_ns)
             self._publish_ball(self._ball)
 

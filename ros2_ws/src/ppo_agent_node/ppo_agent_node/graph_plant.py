@@ -9,7 +9,6 @@ from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
-
 from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted, PlantState
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
@@ -49,7 +48,8 @@ class GraphPlant:
         self._attend = attend
         self._simulator = Simulator(node, background)
         self._balls = Polled(node, contract.BALL, depth=contract.BALL.qos.depth)
-        self._joints = Polled(node, contract.JOINT_STATES, depth=contract.JOINT_STATES.qos.depth, raw=True)
+        self._joints = Polled(
+            node, contract.JOINT_STATES_THROTTLE, depth=contract.JOINT_STATES_THROTTLE.qos.depth, raw=True)
         self._human = WrenchTrack(node, contract.HUMAN_WRENCH, COMMAND_TIMEOUT)
         self._applied = WrenchTrack(node, contract.APPLIED_WRENCH)
         self._publisher = node.create_publisher(

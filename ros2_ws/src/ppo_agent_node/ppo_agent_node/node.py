@@ -8,8 +8,6 @@ import time
 from pathlib import Path
 
 from rclpy.node import Node
-from std_srvs.srv import Trigger
-
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted
 from shared_control.learning.episode_ppo import EpisodePPO
@@ -24,6 +22,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import ParameterError, declare
 from shared_control_ros.runner import Stop, run
+from std_srvs.srv import Trigger
 
 from .graph_plant import GraphPlant
 from .training_topics import TrainingTopics

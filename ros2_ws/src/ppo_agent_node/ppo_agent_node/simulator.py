@@ -6,10 +6,9 @@ from typing import Any
 from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from std_srvs.srv import SetBool, Trigger
-
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
+from std_srvs.srv import SetBool, Trigger
 
 ANSWER_SECONDS = 3.0
 """A simulator that does not answer for this long is asked again: it may have been restarted meanwhile."""

@@ -3,10 +3,9 @@
 from typing import Any
 
 from rclpy.node import Node
-from std_msgs.msg import Float64, Int32, String
-
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
+from std_msgs.msg import Float64, Int32, String
 
 
 class TrainingTopics:

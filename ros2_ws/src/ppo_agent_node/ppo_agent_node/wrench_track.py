@@ -4,7 +4,6 @@ import math
 
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
-
 from shared_control_ros.contract import BASE_FRAME, Topic
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.serialized import stamp_of

@@ -3,11 +3,10 @@
 import signal
 
 import pytest
-from std_srvs.srv import SetBool, Trigger
-
 from shared_control.learning.episode_table import read_rows
 from shared_control.learning.policy_file import load_policy, read_description
 from shared_control_ros import contract
+from std_srvs.srv import SetBool, Trigger
 
 EPISODE_TIMEOUT = 90.0
 

@@ -7,7 +7,6 @@ import time
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
-
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
 from shared_control_ros.diagnostics import Diagnostics

@@ -12,7 +12,6 @@ import pytest
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
-
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
 from shared_control_ros.testing import domain_id

@@ -9,7 +9,6 @@ import yaml
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
-
 from session_recorder_node import recover
 from shared_control_ros import contract
 

@@ -4,7 +4,6 @@ import pytest
 import yaml
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
-
 from session_recorder_node import BagError, recover
 from session_recorder_node.bag_writer import BagWriter
 from session_recorder_node.latched import last_sent

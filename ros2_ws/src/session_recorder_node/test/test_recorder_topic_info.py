@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
 from session_recorder_node.topic_info import message_type
 from shared_control_ros import contract
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from shared_control.envs.plant import PlantInterrupted, PlantState
 from shared_control.robot.posture import Q_REFERENCE
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.local_plant import LocalPlant
 from shared_control.learning.episode_table import EpisodeTable, read_rows

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.learning.coached_ppo import CoachedPPO, find_corrections
 from shared_control.learning.episode import Episode

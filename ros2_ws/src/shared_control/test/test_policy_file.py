@@ -5,7 +5,6 @@ import json
 import pytest
 import torch
 from safetensors.torch import load, save
-
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.learning.learn import learn, make_learner
 from shared_control.learning.policy_file import PolicyFileError, load_policy, read_description, save_policy

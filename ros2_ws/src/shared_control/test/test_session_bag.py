@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from shared_control.human.keystrokes import Key
 from shared_control.robot.limits import DOF
 from shared_control.session import bulk, topics

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from shared_control.session import testing as made
 from shared_control.session import topics
 from shared_control.session.bag import read_bag

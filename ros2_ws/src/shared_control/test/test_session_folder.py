@@ -5,7 +5,6 @@ import subprocess
 import sys
 
 import pytest
-
 from shared_control.session.folder import SessionFolder, SessionFolderError
 
 

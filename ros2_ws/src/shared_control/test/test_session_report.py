@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-
 from shared_control.session import report
 from shared_control.session import testing as made
 from shared_control.session.episodes import read_episodes

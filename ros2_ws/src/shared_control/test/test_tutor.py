@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.local_plant import LocalPlant
 from shared_control.envs.plant import POLICY_PERIOD

@@ -9,10 +9,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
+from session_recorder_node.recovery import recover
 from shared_control.human.profiles import PROFILES
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.session.folder import SessionFolder
-from session_recorder_node.recovery import recover
 
 from . import parameters as ros_parameters
 from .node_process import NodeProcess

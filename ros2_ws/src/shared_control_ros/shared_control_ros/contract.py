@@ -39,6 +39,9 @@ class Topic:
 
 
 JOINT_STATES = Topic('joint_states', JointState, qos(1000))
+JOINT_STATES_THROTTLE = Topic('joint_states_throttle', JointState, qos(100))
+"""Every tenth of them, for those who need no more: each reader of the 1 kHz topic makes the robot's tick longer. (On a
+robot that does not publish it, ``topic_tools throttle messages joint_states 100`` does.) A bag has the whole topic."""
 EFFORT_COMMANDS = Topic('effort_controller/commands', Float64MultiArray, qos(1000))
 KEYS = Topic('human/keys', Joy, qos(50))
 HUMAN_WRENCH = Topic('human/target_wrench', WrenchStamped, qos(50))

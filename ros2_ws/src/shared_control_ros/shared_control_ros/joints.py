@@ -2,7 +2,6 @@
 
 import numpy as np
 from sensor_msgs.msg import JointState
-
 from shared_control.robot.limits import JOINT_NAMES
 
 

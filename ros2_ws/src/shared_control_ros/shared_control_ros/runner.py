@@ -14,12 +14,13 @@ from .parameters import ParameterError
 
 
 class Stop:
-    """Set by SIGINT, SIGTERM and SIGHUP. A node looks at it in its loop, so that it can still publish when it leaves."""
+    """Set by SIGINT, SIGTERM and SIGHUP. A node looks at it in its loop, so that it can publish when it leaves."""
 
     def __init__(self) -> None:
         self.requested = False
 
     def __call__(self, *_: object) -> None:
+        """As a signal handler."""
         self.requested = True
 
 

@@ -5,7 +5,6 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.serialized import stamp_of

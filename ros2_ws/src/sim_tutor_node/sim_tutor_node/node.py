@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 from rclpy.node import Node
-
 from shared_control.envs.plant import POLICY_PERIOD, PlantState
 from shared_control.human.profiles import PROFILES, profile
 from shared_control.human.tutor import SimulatedTutor
@@ -36,7 +35,7 @@ class SimTutorNode:
             node, 'seed', 0, 'Of errors of perception.', minimum=0, maximum=2**31 - 1)
         self._tutor = SimulatedTutor(profile(name), self._seed)
         self._balls = Polled(node, contract.BALL, depth=10)
-        self._joints = Polled(node, contract.JOINT_STATES)
+        self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
         self._human = Polled(node, contract.HUMAN_WRENCH)
         self._phases = Polled(node, contract.PHASE, qos_profile=contract.PHASE.qos)
         self._episodes = Polled(node, contract.EPISODE, qos_profile=contract.EPISODE.qos)

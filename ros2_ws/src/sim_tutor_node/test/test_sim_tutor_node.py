@@ -7,14 +7,13 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Int32, String
-
 from shared_control.human.keystrokes import Key, KeyMoment, KeyPresses
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control.world.ball_on_tray import TRAY_HOME_X
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from std_msgs.msg import Int32, String
 
 
 class Scene:
@@ -24,7 +23,7 @@ class Scene:
         self.observer = observer
         self.heard = observer.listen(contract.KEYS)
         self.balls = observer.publisher(contract.BALL)
-        self.joints = observer.publisher(contract.JOINT_STATES)
+        self.joints = observer.publisher(contract.JOINT_STATES_THROTTLE)
         self.human = observer.publisher(contract.HUMAN_WRENCH)
         self.phases = observer.publisher(contract.PHASE)
         self.episodes = observer.publisher(contract.EPISODE)

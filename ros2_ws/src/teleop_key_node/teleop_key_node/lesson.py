@@ -1,7 +1,6 @@
 """What the agent tells of the lesson that decides whether keys count."""
 
 from rclpy.node import Node
-
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 

@@ -9,7 +9,6 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
-
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.model import PandaModel, pitch
 from shared_control_ros import contract
@@ -31,7 +30,7 @@ class Observer:
     def __init__(self, node: Node):
         self._log = node.get_logger()
         self._model = PandaModel()
-        self._joint_states = Polled(node, contract.JOINT_STATES, qos_profile=_NEWEST)
+        self._joint_states = Polled(node, contract.JOINT_STATES_THROTTLE, qos_profile=_NEWEST)
         self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
         self._agent = _Moment(node, contract.AGENT_WRENCH)
         self._applied = _Moment(node, contract.APPLIED_WRENCH)

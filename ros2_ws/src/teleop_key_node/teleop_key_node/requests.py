@@ -6,9 +6,8 @@ from collections.abc import Callable
 from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.task import Future
-from std_srvs.srv import SetBool, Trigger
-
 from shared_control_ros import contract
+from std_srvs.srv import SetBool, Trigger
 
 ANSWER_WITHIN = 3.0
 """s"""

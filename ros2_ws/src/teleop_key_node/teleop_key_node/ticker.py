@@ -6,7 +6,6 @@ from typing import cast
 from rclpy.clock import ROSClock
 from rclpy.node import Node
 from rclpy.time import Time
-
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.stamps import to_ns

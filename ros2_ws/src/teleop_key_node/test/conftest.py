@@ -16,11 +16,10 @@ import pytest
 import rclpy
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from std_msgs.msg import Int32, String
-
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.testing import domain_id
+from std_msgs.msg import Int32, String
 
 _COMMAND = [sys.executable, '-m', 'teleop_key_node.node', '--ros-args']
 

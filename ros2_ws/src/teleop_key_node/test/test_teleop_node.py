@@ -5,7 +5,6 @@ import time
 
 import pytest
 from rosgraph_msgs.msg import Clock
-
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import pytest
-
 from teleop_key_node.picture import draw
 from teleop_key_node.scene import Scene
 from teleop_key_node.screen import render

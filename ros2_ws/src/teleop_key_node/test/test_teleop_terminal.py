@@ -9,11 +9,10 @@ import pytest
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
-from std_srvs.srv import SetBool, Trigger
-
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_ros import contract
+from std_srvs.srv import SetBool, Trigger
 
 LEFT, RIGHT = b'\x1b[D', b'\x1b[C'
 ENTER, LEAVE = '\x1b[?1049h', '\x1b[?1049l'
@@ -79,7 +78,7 @@ def test_the_screen_shows_the_lesson(graph, start_in_terminal):
     ball = Odometry()
     ball.header.frame_id = 'panda_link0'
     ball.pose.pose.position.x, ball.pose.pose.position.z = -0.385, 0.93
-    joint_publisher, ball_publisher = graph.publisher(contract.JOINT_STATES), graph.publisher(contract.BALL)
+    joint_publisher, ball_publisher = graph.publisher(contract.JOINT_STATES_THROTTLE), graph.publisher(contract.BALL)
     graph.begin('teach', episode=4)
 
     def shown() -> bool:

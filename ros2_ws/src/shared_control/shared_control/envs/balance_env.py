@@ -1,6 +1,6 @@
 """The Gymnasium environment of the task, on whatever plant it is given."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
@@ -26,7 +26,7 @@ class BalanceEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         settings: the task.
     """
 
-    metadata: dict[str, Any] = {'render_modes': []}
+    metadata: ClassVar[dict[str, Any]] = {'render_modes': []}
 
     def __init__(self, plant: Plant, settings: TaskSettings = DEFAULT_TASK):
         self.plant = plant

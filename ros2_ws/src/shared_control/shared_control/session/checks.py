@@ -14,6 +14,8 @@ TICK_NS = 1_000_000
 POLICY_NS = 20 * TICK_NS
 APPLIED_EVERY = 20
 """Ticks; the applied moment is published every ten, or at the next chance after that."""
+AT_START = 2
+"""Ticks or commands that may lack their counterpart where the recording begins."""
 NEVER_SILENT = (topics.JOINT_STATES, topics.EFFORT_COMMANDS, topics.HUMAN_WRENCH, topics.AGENT_WRENCH,
                 topics.APPLIED_WRENCH, topics.BALL, topics.DIAGNOSTICS, topics.CLOCK)
 """Topics on which something is said in every session."""
@@ -59,16 +61,19 @@ def _check_joint_states(bag: Bag) -> Iterator[str]:
 def _check_commands(bag: Bag) -> Iterator[str]:
     """One command a tick, and the torque that a tick reports is one that was commanded.
 
-    The last tick before an end or a restart may be left without an answer, and a repeated tick may have two.
+    The last tick before an end or a restart may be left without an answer, and a repeated tick may have two. Only what
+    the recorder heard after it had found both the simulator and the controller is compared.
     """
     joints, commands = bag.joint_states, bag.commands
     if not len(joints.stamp_ns) or not len(commands.torque):
         return
     new = np.diff(joints.stamp_ns, prepend=0) != 0
-    unanswered = int(new.sum()) - len(commands.torque)
+    both_ns = max(joints.received_ns[0], commands.received_ns[0])
+    ticks = int((new & (joints.received_ns >= both_ns - TICK_NS)).sum())
+    answers = int((commands.received_ns >= both_ns).sum())
     repetitions = int((~new).sum())
-    if not -repetitions <= unanswered <= 1 + _restarts(bag):
-        yield (f'{topics.EFFORT_COMMANDS}: {len(commands.torque)} commands for {int(new.sum())} ticks of '
+    if not -repetitions - AT_START <= ticks - answers <= AT_START + _restarts(bag):
+        yield (f'{topics.EFFORT_COMMANDS}: {answers} commands for {ticks} ticks of '
                f'{topics.JOINT_STATES}')
     commanded = set(map(bytes, commands.torque + 0.0))  # + 0.0 makes -0.0 the same as 0.0
     applied = joints.effort + 0.0
