@@ -1,6 +1,6 @@
 """The Gymnasium environment of the task, on whatever plant it is given."""
 
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -26,7 +26,7 @@ class BalanceEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         settings: the task.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {'render_modes': []}
+    metadata: dict[str, Any] = {'render_modes': []}  # noqa: RUF012 - as Gymnasium declares it
 
     def __init__(self, plant: Plant, settings: TaskSettings = DEFAULT_TASK):
         self.plant = plant
