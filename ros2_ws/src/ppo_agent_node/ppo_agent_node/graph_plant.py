@@ -32,7 +32,7 @@ class GraphPlant:
     """See :class:`shared_control.envs.plant.Plant`.
 
     Policy ticks are the stamps of ``/ball`` that are multiples of 20 ms. The state at such a tick is that ball and the
-    ``/joint_states`` of the same stamp; the moment that answers it carries its stamp, too.
+    ``/joint_states_throttle`` of the same stamp; the moment that answers it carries its stamp, too.
 
     A graph that stands still (paused by a person, or without its controller) is waited for: its time stands still,
     too. When the simulator was started anew, the episode is void: :class:`PlantInterrupted`.
