@@ -1,7 +1,8 @@
 """PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
 
-Takes /ball, /joint_states_throttle, /human/target_wrench and /target_wrench, publishes /agent/target_wrench and /training/*,
-pauses and resets the simulator between episodes. Service: ~/finish (Trigger): end the teaching after this episode.
+Takes /ball, /joint_states_throttle, /human/target_wrench and /target_wrench, publishes /agent/target_wrench and
+/training/*, pauses and resets the simulator between episodes. Service: ~/finish (Trigger): end the teaching after this
+episode.
 """
 
 import time

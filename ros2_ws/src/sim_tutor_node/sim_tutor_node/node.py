@@ -1,6 +1,6 @@
 """Simulated tutor: watches the tray and presses keys on /human/keys while the robot is taught.
 
-Takes /ball, /joint_states_throttle and /human/target_wrench, and /training/phase and /training/episode. It stands in for a
+Takes /ball, /joint_states_throttle, /human/target_wrench, /training/phase and /training/episode. It stands in for a
 person: it sees late and inexactly, and presses keys. In any phase but ``teach`` it keeps its hands off.
 """
 
