@@ -4,6 +4,8 @@ Sums the moments of human and agent, turns them into a wrench at the tray, and p
 ``tau_pd + J^T W_tr + tau_g`` on /effort_controller/commands and the applied moment on /target_wrench.
 """
 
+import gc
+
 import numpy as np
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
@@ -78,6 +80,9 @@ class TorqueCtrlNode:
 
     def run(self, stop: Stop) -> None:
         """Answer joint states until told to stop."""
+        # What a tick makes is freed by reference counts; a collection in mid-tick would only make it late.
+        gc.freeze()
+        gc.disable()
         while not stop.requested:
             message = self._joint_states.wait(0.1)
             if message is None:
