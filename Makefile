@@ -32,7 +32,7 @@ $(VENV)/ready: requirements.txt $(foreach p,$(PACKAGES),$(SRC)/$(p)/setup.py)
 	@touch $@
 
 demo: setup
-	$(BIN)/shared-control session --tutor sim --profile expert --episodes 5 --output out/demo --overwrite
+	$(BIN)/shared-control session --tutor sim --profile expert --episodes 6 --output out/demo --overwrite
 
 session: setup
 	$(BIN)/shared-control session
