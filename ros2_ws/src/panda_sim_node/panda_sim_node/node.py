@@ -72,7 +72,6 @@ class PandaSimNode:
         policy_period_ns = TICKS_PER_ACTION * PERIOD_NS
         self._start_ns = time.time_ns() // policy_period_ns * policy_period_ns
         self._paused = False
-        self._deadline = time.monotonic()
         self._times = TickTimes()
         self._running_seconds = 0.0
         self._missed = 0

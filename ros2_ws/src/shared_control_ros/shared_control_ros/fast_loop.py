@@ -93,20 +93,20 @@ class Background:
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(node)
         self._wait_set: Any = None
-        self._entities: list[tuple[str, Any]] = []
+        self._services: list[Any] = []
 
     def _prepare(self) -> None:
         """Collect the services once: nodes create them at their start."""
-        self._entities = [('service', service.handle) for service in self._node.services]
+        self._services = [service.handle for service in self._node.services]
         self._wait_set = rclpy_implementation.WaitSet(
-            0, 0, 0, 0, len(self._entities), 0, self._node.context.handle)
+            0, 0, 0, 0, len(self._services), 0, self._node.context.handle)
 
     def poll(self) -> None:
         """Serve what waits, if anything does; 15 us when nothing does, against 250 us of ``spin_once``."""
         if self._wait_set is None:
             self._prepare()
         self._wait_set.clear_entities()
-        for _, handle in self._entities:
+        for handle in self._services:
             self._wait_set.add_service(handle)
         self._wait_set.wait(0)
         if self._wait_set.get_ready_entities('service'):

@@ -9,10 +9,10 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.model import PandaModel, pitch
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
+from shared_control_ros.joints import joint_positions
 from shared_control_ros.stamps import to_ns
 
 from .scene import Scene
@@ -70,12 +70,9 @@ class Observer:
 
     def _read_joints(self, joints: JointState, scene: Scene, now: float) -> None:
         try:
-            q = np.array([joints.position[joints.name.index(name)] for name in JOINT_NAMES])
-        except (ValueError, IndexError):
-            self._drop(self._joint_states, f'joints {list(joints.name)}, expected {JOINT_NAMES}')
-            return
-        if not np.isfinite(q).all():
-            self._drop(self._joint_states, f'positions {list(q)}')
+            q = joint_positions(joints)
+        except ValueError as error:
+            self._drop(self._joint_states, str(error))
             return
         stamp_ns = to_ns(joints.header.stamp)
         if stamp_ns != self._stamp_ns:  # a simulator that stands still repeats its last tick

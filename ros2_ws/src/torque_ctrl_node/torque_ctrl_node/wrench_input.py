@@ -60,8 +60,9 @@ class WrenchInput:
         """What is wrong with this source, for the diagnostics; empty when nothing is."""
         if not self._source.stamp_ns:
             return 'nothing received yet'
-        age = (now_ns - self._source.stamp_ns) * 1e-9
-        return f'silent for {age:.2f} s' if age > self._timeout else ''
+        if not self._source.is_stale(now_ns, self._timeout):
+            return ''
+        return f'silent for {(now_ns - self._source.stamp_ns) * 1e-9:.2f} s'
 
     def wait_for_stamp(self, stamp_ns: int, timeout: float) -> bool:
         """Wait up to ``timeout`` s for a wrench as new as ``stamp_ns``; say whether one came."""
