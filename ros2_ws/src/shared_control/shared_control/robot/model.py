@@ -1,5 +1,6 @@
 """Rigid-body model of arm and tray, from the URDF, by pinocchio."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -36,12 +37,29 @@ class PandaModel:
             raise ValueError(f'{urdf} has no frame {TRAY_FRAME!r}')
         self._data = self.pin_model.createData()
         self._tray_id = self.pin_model.getFrameId(TRAY_FRAME)
+        frames = self.pin_model.frames
+        # A link hangs on a joint's frame, which hangs on the link before it.
+        self._links = [
+            (frame.name, index, frames[frame.parentFrame].parentFrame) for index, frame in enumerate(frames)
+            if frame.type == pin.FrameType.BODY and frame.parentFrame]
 
     def tray_pose(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Position (3,), m, and rotation (3, 3) of the tray frame in the base frame (8, 9)."""
         pin.forwardKinematics(self.pin_model, self._data, q)
         placement = pin.updateFramePlacement(self.pin_model, self._data, self._tray_id)
         return placement.translation, placement.rotation
+
+    def link_transforms(self, q: np.ndarray) -> Iterator[tuple[str, str, np.ndarray, np.ndarray]]:
+        """Every link in the frame of the link before it, as in the URDF's tree.
+
+        Yields:
+            Names of parent and child, position (3,), m, and quaternion (4,), x y z w.
+        """
+        pin.framesForwardKinematics(self.pin_model, self._data, q)
+        for name, index, parent in self._links:
+            placement = self._data.oMf[parent].actInv(self._data.oMf[index])
+            yield (self.pin_model.frames[parent].name, name, placement.translation,
+                   quaternion_of(placement.rotation))
 
     def jacobian(self, q: np.ndarray) -> np.ndarray:
         """Jacobian (6, 7) of the tray frame with the base frame's axes; rows x, y, z, wx, wy, wz (14)."""
@@ -60,6 +78,11 @@ class PandaModel:
     def gravity(self, q: np.ndarray) -> np.ndarray:
         """G(q), (7,), N m."""
         return pin.computeGeneralizedGravity(self.pin_model, self._data, q)
+
+
+def quaternion_of(rotation: np.ndarray) -> np.ndarray:
+    """Quaternion (4,), x y z w, of a rotation matrix (3, 3)."""
+    return pin.Quaternion(rotation).coeffs()
 
 
 def pitch(rotation: np.ndarray) -> float:

@@ -1,0 +1,1 @@
+"""What viewers (RViz, Foxglove) need beside the topics of the contract."""

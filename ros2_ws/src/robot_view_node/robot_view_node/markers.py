@@ -1,0 +1,85 @@
+"""Markers of tray, ball and moments, all in the base frame: they need no transforms."""
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from panda_tray_description import URDF_PATH
+from shared_control.robot.model import TRAY_FRAME, quaternion_of
+from shared_control_ros.contract import BASE_FRAME
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker
+
+TRAY_COLOUR = ColorRGBA(r=0.25, g=0.32, b=0.42, a=1.0)
+BALL_COLOUR = ColorRGBA(r=0.8, g=0.47, b=0.65, a=1.0)
+MOMENT_COLOURS = {
+    'human': ColorRGBA(r=0.835, g=0.369, b=0.0, a=1.0),
+    'agent': ColorRGBA(r=0.0, g=0.447, b=0.698, a=1.0),
+    'applied': ColorRGBA(r=0.12, g=0.16, b=0.2, a=1.0),
+}
+"""Those of the reports."""
+METRES_PER_NEWTON_METRE = 0.03
+BAR_HEIGHTS = {'human': 0.30, 'agent': 0.25, 'applied': 0.20}
+"""Of the bars above the tray's centre, m."""
+
+
+def tray_boxes(urdf: Path = URDF_PATH) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Centre and size, each (3,), m, of the boxes that make up the tray, in its frame."""
+    tray = next(link for link in ET.parse(urdf).getroot().iter('link') if link.get('name') == TRAY_FRAME)
+    return [(_numbers(visual.find('origin'), 'xyz'), _numbers(visual.find('geometry/box'), 'size'))
+            for visual in tray.iter('visual')]
+
+
+def tray_markers(position: np.ndarray, rotation: np.ndarray,
+                 boxes: list[tuple[np.ndarray, np.ndarray]]) -> list[Marker]:
+    """The tray at ``position`` (3,), m, turned by ``rotation`` (3, 3)."""
+    turn = Quaternion(**dict(zip('xyzw', quaternion_of(rotation).tolist(), strict=True)))
+    markers = []
+    for number, (centre, size) in enumerate(boxes):
+        marker = _marker('tray', number, Marker.CUBE, TRAY_COLOUR)
+        marker.pose = Pose(position=_point(position + rotation @ centre), orientation=turn)
+        marker.scale = Vector3(**dict(zip('xyz', size.tolist(), strict=True)))
+        markers.append(marker)
+    return markers
+
+
+def ball_marker(position: np.ndarray, radius: float) -> Marker:
+    """The ball; position (3,) and radius in m."""
+    marker = _marker('ball', 0, Marker.SPHERE, BALL_COLOUR)
+    marker.pose.position = _point(position)
+    marker.scale = Vector3(x=2 * radius, y=2 * radius, z=2 * radius)
+    return marker
+
+
+def moment_markers(source: str, m_y: float, tray: np.ndarray) -> list[Marker]:
+    """A bar above the tray (``tray``: its centre, (3,), m), to the side that ``m_y`` (N m) pushes down, and its figure.
+
+    A positive M_y tilts the side towards base +x down, so the bar points to where the ball will roll.
+    """
+    start = tray + [0.0, 0.0, BAR_HEIGHTS[source]]
+    bar = _marker(f'moment {source}', 0, Marker.ARROW, MOMENT_COLOURS[source])
+    bar.points = [_point(start), _point(start + [METRES_PER_NEWTON_METRE * m_y, 0.0, 0.0])]
+    bar.scale = Vector3(x=0.012, y=0.024, z=0.03)  # diameters of shaft and head, length of the head
+    text = _marker(f'moment {source}', 1, Marker.TEXT_VIEW_FACING, MOMENT_COLOURS[source])
+    text.pose.position = _point(start + [0.0, 0.0, 0.025])
+    text.scale.z = 0.025
+    text.text = f'{source} {m_y:+.1f} N m'
+    return [bar, text]
+
+
+def _marker(namespace: str, number: int, kind: int, colour: ColorRGBA) -> Marker:
+    marker = Marker(ns=namespace, id=number, type=kind, action=Marker.ADD, color=colour)
+    marker.header.frame_id = BASE_FRAME
+    marker.pose.orientation.w = 1.0
+    return marker
+
+
+def _point(position: np.ndarray) -> Point:
+    x, y, z = position.tolist()
+    return Point(x=x, y=y, z=z)
+
+
+def _numbers(element: ET.Element | None, attribute: str) -> np.ndarray:
+    assert element is not None, 'the tray is made of boxes, each with an origin'
+    return np.array(element.get(attribute, '').split(), float)
