@@ -6,6 +6,7 @@ from ..control.computed_torque import ComputedTorqueController
 from ..control.moments import sum_moments
 from ..robot.model import PandaModel
 from ..task.balance import BallStarts
+from ..task.settings import DEFAULT_TASK
 from ..world.ball_on_tray import Ball, BallOnTrayWorld
 from .plant import CONTROL_PERIOD, TICKS_PER_ACTION, PlantState
 
@@ -27,14 +28,16 @@ class LocalPlant:
         person: who presses keys; nobody when None.
         moment_limit: bound of |M_y|, N m.
         ball: the ball.
+        ball_start_range: where it is dropped, x in the base frame, m.
     """
 
-    def __init__(self, person: Person | None = None, moment_limit: float = 20.0, ball: Ball = Ball()):
+    def __init__(self, person: Person | None = None, moment_limit: float = 20.0, ball: Ball = Ball(),
+                 ball_start_range: tuple[float, float] = DEFAULT_TASK.ball_start_range):
         self.world = BallOnTrayWorld(ball, CONTROL_PERIOD)
         self.controller = ComputedTorqueController(PandaModel(), dt=CONTROL_PERIOD)
         self._person = person
         self._limit = moment_limit
-        self._starts = BallStarts()
+        self._starts = BallStarts(start_range=ball_start_range)
         self._state: PlantState | None = None
 
     def reset(self, seed: int | None = None) -> PlantState:
@@ -53,10 +56,14 @@ class LocalPlant:
         m_y_human = 0.0 if self._person is None else self._person.moment(self._state)
         m_y = sum_moments(m_y_agent, m_y_human, self._limit)
         for _ in range(TICKS_PER_ACTION):
-            q, qd = self.world.joint_state()
-            self.world.step(self.controller.torque(q, qd, self.world.effort, m_y))
+            self.tick(m_y)
         self._state = self._read(m_y_human, m_y)
         return self._state
+
+    def tick(self, m_y: float) -> None:
+        """One tick of controller and physics with the moment ``m_y``, N m."""
+        q, qd = self.world.joint_state()
+        self.world.step(self.controller.torque(q, qd, self.world.effort, m_y))
 
     def _read(self, m_y_human: float, m_y_applied: float) -> PlantState:
         position, _, velocity, _ = self.world.ball_state()
