@@ -1,5 +1,6 @@
 """Whole sessions on the live graph."""
 
+import json
 import os
 import signal
 from collections import defaultdict
@@ -10,6 +11,7 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from shared_control.learning.episode_table import read_rows
 from shared_control.learning.policy_file import read_description
+from shared_control.report.bag_report import write_bag_report
 from shared_control.session.bag import read_bag
 from shared_control_ros import contract
 
@@ -73,6 +75,9 @@ def test_a_session_is_interrupted_resumed_and_reported(start_session, unpaced, t
     assert summary['autonomous_episodes'] == 2 and summary['control_rate_hz'] > 0
     files = sorted((folder / 'bag').glob('*.mcap'))
     assert len(files) == 2, 'one for each run'
+
+    again = json.loads((write_bag_report(folder / 'bag', tmp_path / 'again').parent / 'summary.json').read_text())
+    assert {name for name in summary if again[name] != summary[name]} == {'picture', 'report'}, 'from the bag alone'
 
     counts = count_with_mcap(folder / 'bag')
     assert counts['/joint_states'] > 40_000 and counts['/human/keys'] > 0

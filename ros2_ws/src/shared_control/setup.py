@@ -13,7 +13,7 @@ setup(
     ],
     install_requires=[
         'panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
-        'rosbags', 'matplotlib', 'jinja2', 'pyyaml',
+        'rosbags', 'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
@@ -21,5 +21,10 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='ROS-free library of shared-control training: robot, controller, world, task, people, learning.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['shared-control = shared_control.cli:main']},
+    entry_points={
+        'console_scripts': ['shared-control = shared_control.cli:main'],
+        'shared_control.commands': [
+            'export = shared_control.export.command:add_command',
+        ],
+    },
 )

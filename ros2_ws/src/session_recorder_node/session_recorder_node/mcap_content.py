@@ -86,9 +86,14 @@ class Content:
         builder = RecordBuilder()
         builder.write(MCAP0_MAGIC)
         Header(profile='ros2', library='session_recorder_node').write(builder)
-        offset = builder.count
-        Metadata(name='rosbag2', metadata=metadata).write(builder)
-        self.metadata.append(MetadataIndex(offset, builder.count - offset, 'rosbag2'))
+        builder.write(self.annotate(builder.count, 'rosbag2', metadata))
+        return builder.end()
+
+    def annotate(self, offset: int, name: str, metadata: dict[str, str]) -> bytes:
+        """A metadata record, to be written at ``offset``; remembers where it will lie."""
+        builder = RecordBuilder()
+        Metadata(name=name, metadata=metadata).write(builder)
+        self.metadata.append(MetadataIndex(offset, builder.count, name))
         return builder.end()
 
     def end(self, offset: int) -> bytes:

@@ -23,8 +23,11 @@ from .bag_folder import BagError, lock
 from .mcap_content import RECORD_HEAD, ChunkInfo, Content, MessageTimes
 
 
-def finish(path: Path) -> tuple[int, int]:
+def finish(path: Path, annotation: tuple[str, dict[str, str]] | None = None) -> tuple[int, int]:
     """Finish a file in place; one without a single whole chunk is removed.
+
+    Args:
+        annotation: name and content of a metadata record to stand behind the messages, in place of an earlier one.
 
     Returns:
         How many messages it holds, and how many bytes of a torn end were cut off.
@@ -41,9 +44,12 @@ def finish(path: Path) -> tuple[int, int]:
             path.unlink()
             return 0, size
         _learn_channels(file, content)
+        content.metadata = [record for record in content.metadata if record.offset < content.chunks[-1].end]
         file.seek(content.chunks[-1].end)
         file.truncate()
         file.write(indexes)
+        if annotation is not None:
+            file.write(content.annotate(file.tell(), *annotation))
         file.write(content.end(file.tell()))
         file.flush()
         os.fsync(file.fileno())

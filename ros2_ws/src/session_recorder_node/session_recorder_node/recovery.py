@@ -42,3 +42,16 @@ def recover(bag: str | Path) -> list[Recovered]:
     if bag_files(bag) and (recovered or not lists_all_files(bag)):
         write_metadata(bag)
     return recovered
+
+
+def annotate(bag: str | Path, name: str, content: dict[str, str]) -> None:
+    """Put a metadata record into the last file of a finished bag, in place of an earlier one.
+
+    Raises:
+        BagError: the bag has no file, or a recorder is still writing it.
+        OSError: the file cannot be written; :func:`recover` finishes it when there is room again.
+    """
+    files = bag_files(Path(bag))
+    if not files:
+        raise BagError(f'there is no bag at {bag}')
+    finish(files[-1], (name, content))

@@ -4,7 +4,7 @@ import pytest
 import yaml
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
-from session_recorder_node import BagError, recover
+from session_recorder_node import BagError, annotate, recover
 from session_recorder_node.bag_writer import BagWriter
 from session_recorder_node.latched import last_sent
 from shared_control_ros import contract
@@ -141,3 +141,19 @@ def test_the_newest_message_of_a_latched_topic_is_found(tmp_path):
     path, _ = record(tmp_path / 'bag')
     newest = CHUNKS * PER_CHUNK - 1
     assert last_sent([path], ['/training/episode', '/training/phase']) == {'/training/episode': newest}
+
+
+def test_an_annotation_stands_in_the_file_and_a_torn_one_costs_no_message(tmp_path):
+    path, _ = record(tmp_path / 'bag')
+    before, plain = messages(path), path.read_bytes()
+    annotate(tmp_path / 'bag', 'note', {'key': 'old'})
+    annotate(tmp_path / 'bag', 'note', {'key': 'new'})
+    with path.open('rb') as file:
+        notes = [record.metadata for record in make_reader(file).iter_metadata() if record.name == 'note']
+    assert notes == [{'key': 'new'}]
+    assert messages(path) == before
+    with Reader(tmp_path / 'bag') as reader:
+        assert reader.message_count == CHUNKS * PER_CHUNK
+    path.write_bytes(path.read_bytes()[:-100])
+    recover(tmp_path / 'bag')
+    assert path.read_bytes() == plain

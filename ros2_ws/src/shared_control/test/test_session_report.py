@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from shared_control.session import report
+from mcap.reader import make_reader
+from mcap.writer import Writer
+from shared_control.report.bag_report import write_bag_report
+from shared_control.session import in_bag, report
 from shared_control.session import testing as made
 from shared_control.session.episodes import read_episodes
 from shared_control.session.final_test import load_test, save_test
@@ -137,6 +140,46 @@ def test_a_test_is_kept_and_read_back(tmp_path):
     assert saved.episodes[0].ball_start == pytest.approx(0.15)
     assert len(saved.episodes[0].track) == 100
     assert load_test(tmp_path / 'none.json') is None
+
+
+def annotated(bag, path, content):
+    """Copy a bag's file and put a session's record into the copy."""
+    with bag.open('rb') as source, path.open('wb') as target:
+        writer = Writer(target)
+        writer.start(profile='ros2')
+        reader = make_reader(source)
+        summary = reader.get_summary()
+        kinds = {schema.id: writer.register_schema(schema.name, schema.encoding, schema.data)
+                 for schema in summary.schemas.values()}
+        channels = {channel.id: writer.register_channel(
+            channel.topic, channel.message_encoding, kinds[channel.schema_id], channel.metadata)
+            for channel in summary.channels.values()}
+        for _, channel, message in reader.iter_messages():
+            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
+        writer.add_metadata(in_bag.RECORD, content)
+        writer.finish()
+
+
+def test_the_bag_alone_gives_the_same_report(folder, tmp_path):
+    original = write_report(folder, restarts=1)
+    annotated(next(folder.bag.glob('*.mcap')), tmp_path / 'session.mcap', in_bag.pack(folder, restarts=1))
+    shutil.rmtree(folder.path)
+    page = write_bag_report(tmp_path / 'session.mcap', tmp_path / 'again')
+    again = json.loads((page.parent / 'summary.json').read_text())
+    places = ('bag', 'picture', 'report')
+    assert {**again, **dict.fromkeys(places)} == {**original.as_dict(), **dict.fromkeys(places)}
+    assert '19 of 20 randomised episodes succeeded' in page.read_text()
+    assert (page.parent / 'picture.png').read_bytes().startswith(PNG)
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_a_bag_of_a_session_that_was_killed_tells_what_its_topics_do(bag, lessons, tmp_path):
+    page = write_bag_report(bag, tmp_path / 'again')
+    assert 'The tutor was simulated' in page.read_text()
+    rows = read_episodes(page.parent / 'learner' / 'episodes.csv')
+    assert [(row.number, row.episode_return) for row in rows] == [(1, -100.0), (2, -100.0), (3, -100.0)]
+    with pytest.raises(OSError, match='already holds a session'):
+        write_bag_report(bag, tmp_path / 'again')
 
 
 def test_damaged_tables_are_named(tmp_path):

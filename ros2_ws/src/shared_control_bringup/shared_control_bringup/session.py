@@ -9,9 +9,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from session_recorder_node.recovery import recover
+from session_recorder_node.recovery import annotate, recover
 from shared_control.human.profiles import PROFILES
 from shared_control.learning.presets import PRESETS, preset
+from shared_control.session import in_bag
 from shared_control.session.folder import SessionFolder
 
 from . import parameters as ros_parameters
@@ -68,6 +69,8 @@ def run(args: argparse.Namespace) -> int:
         describe_policy(folder)
     if end is End.DONE and settings['test_episodes']:
         test_policy(folder, settings['test_episodes'])
+    if folder.bag.exists() and any(folder.bag.glob('*.mcap')):
+        annotate(folder.bag, in_bag.RECORD, in_bag.pack(folder, restarts))
     tell_summary(folder, write_report(folder, restarts))
     if end is not End.DONE:
         print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}')

@@ -41,6 +41,15 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
     return rows
 
 
+def write_episodes(rows: list[EpisodeRow], path: Path) -> None:
+    """Write a table that :func:`read_episodes` reads; what is None stays empty."""
+    with path.open('w', newline='') as file:
+        writer = csv.writer(file)
+        writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share'))
+        writer.writerows((row.number, row.phase, row.seconds, row.episode_return,
+                          None if row.fallen is None else int(row.fallen), row.human_share) for row in rows)
+
+
 def _number(row: dict[str, str], column: str) -> float | None:
     text = row.get(column)
     return float(text) if text else None
