@@ -9,7 +9,6 @@ import numpy as np
 import pybullet
 import pytest
 from builtin_interfaces.msg import Time
-from panda_sim_node.state_publisher import StatePublisher
 from panda_tray_description import URDF_PATH
 from robot_view_node.transforms import arm_transforms, ball_transform
 from shared_control.robot.model import PandaModel
@@ -17,6 +16,7 @@ from shared_control.world.ball_on_tray import BallOnTrayWorld
 from shared_control_ros import contract
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.state_publisher import StatePublisher
 from urdf_parser_py.urdf import URDF
 
 TOLERANCE = 1e-6
@@ -91,7 +91,7 @@ def test_description_transforms_and_odometry_agree_with_the_simulator(observer, 
         world.step(torque)
         if tick % 50:
             continue
-        published.publish(tick, tick * 1_000_000)
+        published.publish(tick, tick * 1_000_000, world.effort)
         observer.spin(lambda tick=tick: len(states) == len(balls) == tick // 50, what='the state that was published')
         assert to_ns(states[-1].header.stamp) == to_ns(balls[-1].header.stamp) == tick * 1_000_000
 

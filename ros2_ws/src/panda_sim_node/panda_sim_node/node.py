@@ -5,7 +5,6 @@ pushes at the tray on /disturbance. Services: ~/reset (Trigger), ~/pause (SetBoo
 """
 
 import gc
-import math
 import time
 
 import numpy as np
@@ -13,17 +12,16 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.robot.limits import DOF
 from shared_control.task.balance import BallStarts
 from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
-from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
-from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
+from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
+from shared_control_ros.state_publisher import StatePublisher
 from std_srvs.srv import SetBool, Trigger
 
-from .state_publisher import StatePublisher
 from .tick_times import TickTimes
 
 PERIOD_NS = round(CONTROL_PERIOD * 1e9)
@@ -58,9 +56,9 @@ class PandaSimNode:
         self._starts = BallStarts(seed)
         self._world.reset(self._starts.next())
         self._states = StatePublisher(node, self._world)
-        self._commands = Polled(node, contract.EFFORT_COMMANDS)
-        self._disturbances = Polled(node, contract.DISTURBANCE)
-        self._push_until = 0
+        self._timeout_ticks = round(timeout / CONTROL_PERIOD)
+        self._commands = TorqueInput(node)
+        self._pushes = PushInput(node, self._world, self._timeout_ticks)
         node.create_service(Trigger, '~/reset', self._on_reset)
         node.create_service(SetBool, '~/pause', self._on_pause)
         node.add_on_set_parameters_callback(self._on_parameters)
@@ -75,7 +73,6 @@ class PandaSimNode:
         self._times = TickTimes()
         self._running_seconds = 0.0
         self._missed = 0
-        self._timeout_ticks = round(timeout / CONTROL_PERIOD)
         self._command: np.ndarray | None = None
         self._command_age = 0
 
@@ -104,10 +101,10 @@ class PandaSimNode:
     def _between_actions(self) -> None:
         """Requests and disturbances are looked at only here, so that episodes start at policy ticks."""
         self._background.poll()
-        self._take_disturbance()
+        self._pushes.update(self._tick)
 
     def _publish(self) -> None:
-        self._states.publish(self._tick, self._start_ns + self._tick * PERIOD_NS)
+        self._states.publish(self._tick, self._start_ns + self._tick * PERIOD_NS, self._world.effort)
 
     # -- lockstep --------------------------------------------------------------------------------------------------
 
@@ -129,7 +126,7 @@ class PandaSimNode:
         waited = 0.0
         while not stop.requested:
             message = self._commands.wait(REPEAT_AFTER)
-            torque = None if message is None else self._read(message)
+            torque = None if message is None else self._commands.read(message)
             if torque is not None:
                 return torque
             if message is None:
@@ -154,8 +151,7 @@ class PandaSimNode:
     def _advance_free(self, stop: Stop) -> None:
         self._pace()
         started = time.perf_counter()
-        message = self._commands.take()
-        torque = None if message is None else self._read(message)
+        torque = self._commands.take_torque()
         if torque is None:
             self._missed += 1
             self._command_age += 1
@@ -171,33 +167,7 @@ class PandaSimNode:
         self._times.add(time.perf_counter() - started)
         self._diagnostics.tick()
 
-    # -- input -----------------------------------------------------------------------------------------------------
-
-    def _read(self, message: contract.Float64MultiArray) -> np.ndarray | None:
-        """Torques of a command, (7,), N m; None when it is unusable."""
-        torque = np.array(message.data)
-        if torque.shape == (DOF,) and math.isfinite(torque.sum()):
-            return torque
-        self.node.get_logger().error(
-            f'dropped a message on {self._commands.topic_name}: expected {DOF} finite torques, got '
-            f'{list(message.data)[:10]}', throttle_duration_sec=1.0)
-        return None
-
-    def _take_disturbance(self) -> None:
-        message = self._disturbances.take()
-        if message is None:
-            if self._push_until and self._tick >= self._push_until:
-                self._world.push(np.zeros(3))
-                self._push_until = 0
-            return
-        force = np.array([message.wrench.force.x, message.wrench.force.y, message.wrench.force.z])
-        if message.header.frame_id != contract.BASE_FRAME or not math.isfinite(force.sum()):
-            self.node.get_logger().error(
-                f'dropped a message on {self._disturbances.topic_name}: frame_id {message.header.frame_id!r} (expected '
-                f'{contract.BASE_FRAME!r}), force {force}', throttle_duration_sec=1.0)
-            return
-        self._world.push(force)
-        self._push_until = self._tick + self._timeout_ticks
+    # -- services ---------------------------------------------------------------------------------------------------
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         ball_x = self._starts.next()

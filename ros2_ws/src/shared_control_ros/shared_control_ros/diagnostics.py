@@ -49,14 +49,17 @@ class Diagnostics:
         """Whether a second has passed since the last report."""
         return time.monotonic() >= self._next_report
 
-    def publish(self, problems: dict[str, str], **values: object) -> None:
-        """Publish the statistics, ``values``, and ``problems`` (topic -> what is wrong with it)."""
+    def publish(self, problems: dict[str, str], level: bytes | None = None, **values: object) -> None:
+        """Publish the statistics, ``values``, and ``problems`` (topic -> what is wrong with it).
+
+        ``level`` is that of :class:`DiagnosticStatus`; OK, or WARN when there are problems, when not given.
+        """
         self._next_report = time.monotonic() + 1.0
         periods = self._periods[:min(self._count, self._CAPACITY)] * 1e3
         self._count = 0
         p50, p99 = np.percentile(periods, [50, 99]) if periods.size else (float('nan'), float('nan'))
         status = DiagnosticStatus(name=self._node.get_fully_qualified_name(), hardware_id='')
-        status.level = DiagnosticStatus.WARN if problems else DiagnosticStatus.OK
+        status.level = level or (DiagnosticStatus.WARN if problems else DiagnosticStatus.OK)
         status.message = '; '.join(f'{topic}: {what}' for topic, what in problems.items()) or 'ok'
         shown = {'period_p50_ms': f'{p50:.3f}', 'period_p99_ms': f'{p99:.3f}', 'overruns': self.overruns, **values}
         status.values = [KeyValue(key=key, value=str(value)) for key, value in shown.items()]

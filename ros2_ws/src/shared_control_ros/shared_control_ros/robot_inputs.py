@@ -1,0 +1,68 @@
+"""What a robot in a simulated world hears: torques, pushes at the tray."""
+
+import math
+
+import numpy as np
+from rclpy.node import Node
+from shared_control.robot.limits import DOF
+from shared_control.world.ball_on_tray import BallOnTrayWorld
+from std_msgs.msg import Float64MultiArray
+
+from . import contract
+from .fast_loop import Polled
+
+
+class TorqueInput(Polled):
+    """Joint torques on /effort_controller/commands; unusable ones are refused with an error."""
+
+    def __init__(self, node: Node):
+        super().__init__(node, contract.EFFORT_COMMANDS)
+
+    def read(self, message: Float64MultiArray) -> np.ndarray | None:
+        """Torques of a command, (7,), N m; None when it is unusable."""
+        torque = np.array(message.data)
+        if torque.shape == (DOF,) and math.isfinite(torque.sum()):
+            return torque
+        self._node.get_logger().error(
+            f'dropped a message on {self.topic_name}: expected {DOF} finite torques, got '
+            f'{list(message.data)[:10]}', throttle_duration_sec=1.0)
+        return None
+
+    def take_torque(self) -> np.ndarray | None:
+        """The newest usable torques that wait, (7,), N m."""
+        message = self.take()
+        return None if message is None else self.read(message)
+
+
+class PushInput:
+    """Pushes at the tray on /disturbance; each counts for a while.
+
+    Args:
+        node: the robot's node.
+        world: what is pushed.
+        ticks: how long a push counts.
+    """
+
+    def __init__(self, node: Node, world: BallOnTrayWorld, ticks: int):
+        self._node = node
+        self._world = world
+        self._ticks = ticks
+        self._input = Polled(node, contract.DISTURBANCE)
+        self._until = 0
+
+    def update(self, tick: int) -> None:
+        """Hear a new push, or end the last one when its time is up."""
+        message = self._input.take()
+        if message is None:
+            if self._until and tick >= self._until:
+                self._world.push(np.zeros(3))
+                self._until = 0
+            return
+        force = np.array([message.wrench.force.x, message.wrench.force.y, message.wrench.force.z])
+        if message.header.frame_id != contract.BASE_FRAME or not math.isfinite(force.sum()):
+            self._node.get_logger().error(
+                f'dropped a message on {self._input.topic_name}: frame_id {message.header.frame_id!r} (expected '
+                f'{contract.BASE_FRAME!r}), force {force}', throttle_duration_sec=1.0)
+            return
+        self._world.push(force)
+        self._until = tick + self._ticks
