@@ -71,6 +71,10 @@ class PandaModel:
         upper = np.triu(pin.crba(self.pin_model, self._data, q))
         return upper + np.triu(upper, 1).T
 
+    def inverse_dynamics(self, q: np.ndarray, qd: np.ndarray, qdd: np.ndarray) -> np.ndarray:
+        """M(q) qdd + C(q, qd) qd + G(q), (7,), N m, by the recursive Newton-Euler algorithm (15, 16)."""
+        return pin.rnea(self.pin_model, self._data, q, qd, qdd)
+
     def nonlinear_effects(self, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
         """C(q, qd) qd + G(q), (7,), N m, by the recursive Newton-Euler algorithm (28)."""
         return pin.nonLinearEffects(self.pin_model, self._data, q, qd)
