@@ -13,6 +13,7 @@ setup(
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
         ('share/' + package_name + '/config', glob(package_name + '/config/*')),
+        *[(f'share/{package_name}/{folder}', glob(folder + '/*')) for folder in ('bags', 'launch', 'views')],
     ],
     install_requires=[
         'shared_control', 'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node',

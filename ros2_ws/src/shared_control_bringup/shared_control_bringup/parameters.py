@@ -9,7 +9,7 @@ DEFAULTS = Path(__file__).parent / 'config' / 'session.yaml'
 
 
 def load(path: Path = DEFAULTS) -> dict[str, dict[str, Any]]:
-    """Parameters by node.
+    """Parameters by node; a node named for any namespace (``/**/NODE``) appears under its name.
 
     Raises:
         ValueError: the file is not a ROS parameter file; the message names it.
@@ -24,7 +24,7 @@ def load(path: Path = DEFAULTS) -> dict[str, dict[str, Any]]:
     for node, section in content.items():
         if not isinstance(section, dict) or not isinstance(section.get('ros__parameters'), dict):
             raise ValueError(f'{path}: node {node!r} has no ros__parameters')
-    return {node: dict(section['ros__parameters']) for node, section in content.items()}
+    return {node.removeprefix('/**/'): dict(section['ros__parameters']) for node, section in content.items()}
 
 
 def save(parameters: dict[str, dict[str, Any]], path: Path) -> None:

@@ -1,0 +1,22 @@
+"""``ros2 bag record`` of what session_recorder_node records: every topic of the contract, with its QoS."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, ExecuteProcess
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from shared_control_bringup.launching import SHARE, environment
+from shared_control_ros.contract import TOPICS
+
+
+def generate_launch_description() -> LaunchDescription:
+    """See the module."""
+    return LaunchDescription([
+        DeclareLaunchArgument('output', default_value='bag', description="The bag's folder; must not exist yet."),
+        *environment(),
+        ExecuteProcess(
+            cmd=['ros2', 'bag', 'record', '--storage', 'mcap', '--output', LaunchConfiguration('output'),
+                 '--storage-config-file', PathJoinSubstitution([SHARE, 'bags', 'mcap_writer_options.yaml']),
+                 '--qos-profile-overrides-path', PathJoinSubstitution([SHARE, 'bags', 'qos_overrides.yaml']),
+                 '--include-unpublished-topics', '--topics',
+                 *(f'/{topic.name.removeprefix("/")}' for topic in TOPICS)],
+            output='screen'),
+    ])

@@ -1,0 +1,83 @@
+"""What the launch files are made of. Needs ``launch`` and ``launch_ros``, which a ROS install has and PyPI has not."""
+
+import os
+from typing import Any
+
+from launch import Action, LaunchContext, SomeSubstitutionsType
+from launch.actions import (
+    DeclareLaunchArgument,
+    GroupAction,
+    IncludeLaunchDescription,
+    RegisterEventHandler,
+    SetEnvironmentVariable,
+    Shutdown,
+)
+from launch.conditions import IfCondition
+from launch.event_handlers import OnProcessExit
+from launch.events.process import ProcessExited
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node, PushRosNamespace
+from launch_ros.substitutions import FindPackageShare
+from shared_control_ros.processes import node_environment
+
+from .node_process import UNUSABLE
+from .parameters import DEFAULTS
+
+RESPAWN_DELAY = 1.0
+"""s"""
+SHARE = FindPackageShare('shared_control_bringup')
+
+
+def common_arguments() -> list[DeclareLaunchArgument]:
+    """Arguments of every launch file that starts nodes of the graph."""
+    return [
+        DeclareLaunchArgument('params_file', default_value=str(DEFAULTS), description='ROS parameters of all nodes.'),
+        DeclareLaunchArgument('namespace', default_value='', description='Of all nodes and topics but /clock and /tf.'),
+    ]
+
+
+def view_argument(default: str = 'false') -> DeclareLaunchArgument:
+    """``view``: for launch files that can show what they start."""
+    return DeclareLaunchArgument(
+        'view', default_value=default, description='Also start robot_state_publisher, robot_view_node and RViz.')
+
+
+def environment() -> list[SetEnvironmentVariable]:
+    """What :func:`shared_control_ros.processes.node_environment` adds to the environment of the shell."""
+    return [SetEnvironmentVariable(name, value) for name, value in node_environment().items()
+            if os.environ.get(name) != value]
+
+
+def graph_node(package: SomeSubstitutionsType, *, parameters: dict[str, Any] | None = None, **options: Any) -> Node:
+    """A node of the graph: package and executable of one name, the parameter file, started again when it dies.
+
+    ``parameters`` come before those of the file; ``options`` go to ``launch_ros.actions.Node``.
+    """
+    files: list[Any] = [LaunchConfiguration('params_file')]
+    return Node(
+        package=package, executable=package, parameters=files + ([parameters] if parameters else []),
+        respawn=True, respawn_delay=RESPAWN_DELAY, **options)
+
+
+def in_namespace(actions: list[Action]) -> GroupAction:
+    """These actions in the namespace of the argument ``namespace``."""
+    return GroupAction([PushRosNamespace(LaunchConfiguration('namespace')), *actions])
+
+
+def view(**arguments: SomeSubstitutionsType) -> IncludeLaunchDescription:
+    """``view.launch.py`` when the argument ``view`` is true."""
+    return IncludeLaunchDescription(
+        PathJoinSubstitution([SHARE, 'launch', 'view.launch.py']), launch_arguments=arguments.items(),
+        condition=IfCondition(LaunchConfiguration('view')))
+
+
+def end_with(leader: str = '') -> RegisterEventHandler:
+    """End the launch when ``leader`` is done, or when a node cannot run with its parameters or files."""
+    def look(event: ProcessExited, _: LaunchContext) -> list[Action] | None:
+        if event.returncode == UNUSABLE:
+            return [Shutdown(reason=f'{event.process_name} cannot run with its parameters or files: see its output')]
+        if leader and event.returncode == 0 and event.process_name.startswith(leader):
+            return [Shutdown(reason=f'{leader} is done')]
+        return None
+
+    return RegisterEventHandler(OnProcessExit(on_exit=look))
