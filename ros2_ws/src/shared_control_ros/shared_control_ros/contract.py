@@ -8,7 +8,7 @@ from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState, Joy
-from std_msgs.msg import Float64, Float64MultiArray, Int32, String
+from std_msgs.msg import Bool, Float64, Float64MultiArray, Int32, String
 
 BASE_FRAME = 'panda_link0'
 BALL_FRAME = 'ball'
@@ -49,6 +49,8 @@ AGENT_WRENCH = Topic('agent/target_wrench', WrenchStamped, qos(50))
 APPLIED_WRENCH = Topic('target_wrench', WrenchStamped, qos(1000))
 BALL = Topic('ball', Odometry, qos(100))
 DISTURBANCE = Topic('disturbance', WrenchStamped, qos(10))
+EMERGENCY_STOP = Topic('emergency_stop', Bool, qos(10))
+"""True stops the controller, whoever says so; false changes nothing."""
 DIAGNOSTICS = Topic('diagnostics', DiagnosticArray, qos(10))
 CLOCK = Topic('/clock', Clock, qos(100))
 """Absolute: rclpy looks for it there, whatever the namespace."""
@@ -63,7 +65,7 @@ SUCCESS = Topic('training/success', Float64, qos_latched())
 
 TOPICS = (
     JOINT_STATES, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH, BALL,
-    DISTURBANCE, DIAGNOSTICS, CLOCK, EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
+    DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
 """Every topic of the contract; a recorder records these."""
 
 RESET_SERVICE = 'panda_sim_node/reset'

@@ -88,6 +88,10 @@ class ComputedTorqueController:
             torque -= self._model.gravity(q)
         return limit_torque(torque, effort, self._rate)
 
+    def damping_torque(self, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> np.ndarray:
+        """The torque that brings the arm to rest wherever it is, (7,), N m: K_d alone, with what compensates weight."""
+        return self.torque(q, qd, effort, 0.0, q_reference=q + qd * self._horizon)
+
 
 def limit_torque(torque: np.ndarray, previous: np.ndarray, step: np.ndarray | float) -> np.ndarray:
     """``torque`` kept within the joints' limits and within ``step`` (N m) of ``previous``; (7,), N m."""

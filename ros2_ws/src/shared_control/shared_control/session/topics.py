@@ -8,6 +8,7 @@ AGENT_WRENCH = '/agent/target_wrench'
 APPLIED_WRENCH = '/target_wrench'
 BALL = '/ball'
 DISTURBANCE = '/disturbance'
+EMERGENCY_STOP = '/emergency_stop'
 DIAGNOSTICS = '/diagnostics'
 CLOCK = '/clock'
 EPISODE = '/training/episode'
@@ -19,7 +20,7 @@ SUCCESS = '/training/success'
 
 TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
 TOPICS = (JOINT_STATES, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH, BALL, DISTURBANCE,
-          DIAGNOSTICS, CLOCK, *TRAINING)
+          EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING)
 """Every topic of the contract."""
 
 BASE_FRAME = 'panda_link0'
