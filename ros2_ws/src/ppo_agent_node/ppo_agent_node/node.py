@@ -1,8 +1,8 @@
 """PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
 
 Takes /ball, /joint_states_throttle, /human/target_wrench and /target_wrench, publishes /agent/target_wrench and
-/training/*, pauses and resets the simulator between episodes. Service: ~/finish (Trigger): end the teaching after this
-episode.
+/training/*, pauses and resets the simulator between episodes. Services (Trigger): ~/start: end the practice;
+~/repeat: start the episode over; ~/finish: end the teaching after this episode.
 """
 
 import time
@@ -56,6 +56,9 @@ class PpoAgentNode(Hooks):
         self._test_episodes = declare(
             node, 'test_episodes', 0, 'Test the policy alone with so many episodes on the graph, in the end.',
             minimum=0, maximum=1000)
+        self._practises = declare(
+            node, 'practice', False, 'Before a new learner is taught, the person alone moves the tray until ~/start '
+            'is called (3.4).')
         output = declare(
             node, 'output', '', f'Folder for {POLICY_NAME} and {TABLE_NAME}; a learner that is there goes on. Empty: '
             'nothing is kept.')
@@ -74,11 +77,14 @@ class PpoAgentNode(Hooks):
         warm_up(self._learner.preset)
         self._seconds_left = minutes * 60.0
         self._finish = False
+        self._repeat = False
         self._training = TrainingTopics(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
         self._background = Background(node)
         self._plant = GraphPlant(node, self._background, self._attend)
         self._stop: Stop | None = None
+        node.create_service(Trigger, '~/start', self._on_start)
+        node.create_service(Trigger, '~/repeat', self._on_repeat)
         node.create_service(Trigger, '~/finish', self._on_finish)
 
     def _make_learner(self, preset_name: str, seed: int, output: str, resume: bool) -> EpisodePPO:
@@ -109,6 +115,7 @@ class PpoAgentNode(Hooks):
         try:
             self._wait()
             if self._teaches:
+                self._practise()
                 learn(self._learner, BalanceEnv(self._plant, self._learner.preset.task), self._episodes or None, self)
             if self._test_episodes:
                 self._test()
@@ -119,6 +126,19 @@ class PpoAgentNode(Hooks):
     def _wait(self) -> None:
         self._training.enter('wait')
         self._plant.wait_until_up()
+
+    def _practise(self) -> None:
+        """The person alone moves the tray; a ball that falls is dropped anew."""
+        task = self._learner.preset.task
+        self._practises = self._practises and not self._learner.episode
+        while self._practises and not self._finish:
+            self._training.enter('practice')
+            try:
+                state = self._plant.reset(None)
+                while self._practises and not self._finish and state.ball_position[2] > task.fallen_below:
+                    state = self._plant.advance(0.0)
+            except PlantInterrupted as error:
+                self.interrupted(error)
 
     def _test(self) -> None:
         env = BalanceEnv(self._plant, test_settings(self._learner.preset.task))
@@ -138,6 +158,17 @@ class PpoAgentNode(Hooks):
         if self._stop is not None and self._stop.requested:
             raise _Stopped
 
+    def _on_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success = self._practises
+        response.message = 'the teaching begins' if self._practises else 'this is no practice'
+        self._practises = False
+        return response
+
+    def _on_repeat(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success = self._repeat = self._training.phase in ('teach', 'test')
+        response.message = 'the episode starts over' if self._repeat else 'there is no episode to start over'
+        return response
+
     def _on_finish(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         self._finish = True
         response.success = self._teaches
@@ -155,12 +186,15 @@ class PpoAgentNode(Hooks):
     def episode_started(self, record: EpisodeRecord) -> None:
         """See :class:`Hooks`."""
         self._started = time.monotonic()
+        self._repeat = False
         self._diagnostics.skip()
         self._training.enter(record.phase)
         self._training.episode(record.episode)
 
     def stepped(self, record: EpisodeRecord) -> None:
         """See :class:`Hooks`."""
+        if self._repeat:
+            raise PlantInterrupted('the person starts it over')
         self._diagnostics.tick()
         if record.steps % STEPS_PER_PROGRESS == 0:
             length = self._learner.preset.task.episode_seconds if record.phase == 'teach' else TEST_SECONDS

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import re
 import signal
 import sys
 import time
@@ -14,11 +15,12 @@ from shared_control.human.profiles import PROFILES
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.session import in_bag
 from shared_control.session.folder import SessionFolder
+from shared_control_ros.host_and_port import host_and_port
 
 from . import parameters as ros_parameters
 from .node_process import NodeProcess
 from .progress import EpisodePrinter
-from .supervisor import SessionError, Supervisor
+from .supervisor import SessionError, StoppedByNode, Supervisor
 
 POLL_SECONDS = 0.1
 
@@ -28,8 +30,11 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser = commands.add_parser(
         'session', help='teach the robot on the running graph', description=__doc__,
         formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument('--tutor', choices=('keyboard', 'sim', 'none'), default='keyboard',
-                        help='who teaches: you at this terminal, a simulated tutor, or nobody')
+    parser.add_argument('--tutor', choices=('keyboard', 'page', 'sim', 'none'), default='keyboard',
+                        help='who teaches: you at this terminal, you in a browser, a simulated tutor, or nobody')
+    parser.add_argument('--page', type=host_and_port, default='127.0.0.1:8088', metavar='HOST:PORT',
+                        help='where the page of --tutor page is served; another host than loopback opens it to the '
+                        'network, with a token')
     parser.add_argument('--profile', choices=tuple(PROFILES), default='expert', help='of the simulated tutor')
     parser.add_argument('--preset', choices=tuple(PRESETS), default='coached', help='what is learned and how')
     parser.add_argument('--episodes', type=int, default=0,
@@ -52,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     folder, settings = _resumed(args.resume) if args.resume else _new(args)
     if settings['tutor'] == 'keyboard' and not _has_terminal():
         raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
-    shows_screen = _has_terminal() and not args.no_screen
+    shows_screen = _has_terminal() and not args.no_screen and settings['tutor'] != 'page'
     parameters = _parameters(settings, folder, shows_screen)
     ros_parameters.save(parameters, folder.parameters)
     folder.settings.write_text(json.dumps(settings, indent=2) + '\n')
@@ -91,7 +96,7 @@ def _new(args: argparse.Namespace) -> tuple[SessionFolder, dict[str, Any]]:
     settings = {
         'preset': args.preset, 'tutor': f'simulated: {args.profile}' if args.tutor == 'sim' else args.tutor,
         'episodes': args.episodes, 'minutes': args.minutes, 'test_episodes': args.test_episodes, 'seed': args.seed,
-        'params_file': str(args.params_file)}
+        'page': list(args.page), 'params_file': str(args.params_file)}
     return SessionFolder.create(path, overwrite=args.overwrite), settings
 
 
@@ -113,8 +118,11 @@ def _parameters(settings: dict[str, Any], folder: SessionFolder, shows_screen: b
     put('torque_ctrl_node', moment_limit=preset(settings['preset']).task.moment_limit)
     put('teleop_key_node', screen='auto' if shows_screen else 'off')
     put('ppo_agent_node', preset=settings['preset'], seed=settings['seed'], episodes=settings['episodes'],
-        max_minutes=settings['minutes'], output=str(folder.learner))
+        max_minutes=settings['minutes'], practice=settings['tutor'] == 'page', output=str(folder.learner))
     put('session_recorder_node', output=str(folder.bag))
+    if settings['tutor'] == 'page':
+        host, port = settings['page']
+        put('teach_page_node', host=host, port=port)
     if settings['tutor'].startswith('simulated'):
         put('sim_tutor_node', profile=settings['tutor'].removeprefix('simulated: '), seed=settings['seed'])
     return parameters
@@ -125,6 +133,8 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
     names = ['session_recorder_node', 'torque_ctrl_node', 'panda_sim_node', 'teleop_key_node']
     if settings['tutor'].startswith('simulated'):
         names.append('sim_tutor_node')
+    if settings['tutor'] == 'page':
+        names.append('teach_page_node')
     names.append('ppo_agent_node')
     nodes = [NodeProcess(name, folder.parameters, folder.logs / f'{name}.log',
                          in_foreground=shows_screen and name == 'teleop_key_node') for name in names]
@@ -135,17 +145,18 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
         if not shows_screen:
             print(text, flush=True)
 
-    supervisor = Supervisor(nodes, 'ppo_agent_node', say)
+    supervisor = Supervisor(nodes, leader='ppo_agent_node', stopper='teach_page_node', say=say)
     episodes = EpisodePrinter(folder.episodes, say)
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
     error: SessionError | None = None
     try:
         supervisor.start()
+        _tell_address(folder.logs / 'teach_page_node.log', settings)
         while supervisor.poll():
             episodes.poll()
             time.sleep(POLL_SECONDS)
         end = End.DONE
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, StoppedByNode):
         end = End.STOPPED
     except SessionError as problem:
         end, error = End.FAILED, problem
@@ -164,6 +175,13 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
 
 def _interrupt(*_: object) -> None:
     raise KeyboardInterrupt
+
+
+def _tell_address(log: Path, settings: dict[str, Any]) -> None:
+    """Where the page is, as its node has said."""
+    if settings['tutor'] == 'page':
+        *_, address = re.findall(r'open (http\S+)', log.read_text()) or ['the address that its log tells: ' + str(log)]
+        print(f'\n    Teach here: {address}\n', flush=True)
 
 
 def _has_terminal() -> bool:

@@ -14,6 +14,10 @@ class SessionError(RuntimeError):
     """The session cannot go on; the message says why and which log tells more."""
 
 
+class StoppedByNode(Exception):
+    """The person stopped the session at a node."""
+
+
 class Supervisor:
     """Runs nodes until one of them, the leader, is done.
 
@@ -21,11 +25,13 @@ class Supervisor:
         nodes: in the order in which they start; they stop in the reverse order.
         leader: the node whose clean exit ends the session.
         say: told of every restart.
+        stopper: the node whose clean exit stops the session.
     """
 
-    def __init__(self, nodes: list[NodeProcess], leader: str, say: Callable[[str], None]):
+    def __init__(self, nodes: list[NodeProcess], leader: str, say: Callable[[str], None], stopper: str = ''):
         self._nodes = nodes
         self._leader = leader
+        self._stopper = stopper
         self._say = say
         self._deaths: dict[str, list[float]] = {}
 
@@ -40,6 +46,7 @@ class Supervisor:
 
         Raises:
             SessionError: a node cannot run with its parameters, or dies again and again.
+            StoppedByNode: the node at which a person can stop the session has ended.
         """
         for node in self._nodes:
             code = node.exit_code()
@@ -47,6 +54,8 @@ class Supervisor:
                 continue
             if node.name == self._leader and code == 0:
                 return False
+            if node.name == self._stopper and code == 0:
+                raise StoppedByNode
             if code == UNUSABLE:
                 raise SessionError(f'{node.name}: {node.last_error()}')
             self._restart(node, code)

@@ -19,8 +19,8 @@ class Lesson:
 
     @property
     def keys_count(self) -> bool:
-        """Keys count while the robot is taught, and when no lesson is given at all."""
-        return self.phase in (None, 'teach')
+        """Keys count in practice, while the robot is taught, and when no lesson is given at all."""
+        return self.phase in (None, 'practice', 'teach')
 
     def update(self) -> bool:
         """Take what was published; whether a new episode or phase has begun."""

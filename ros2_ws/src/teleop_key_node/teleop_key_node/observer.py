@@ -32,8 +32,8 @@ class Observer:
         self._model = PandaModel()
         self._joint_states = Polled(node, contract.JOINT_STATES_THROTTLE, qos_profile=_NEWEST)
         self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
-        self._agent = _Moment(node, contract.AGENT_WRENCH)
-        self._applied = _Moment(node, contract.APPLIED_WRENCH)
+        self._agent = Moment(node, contract.AGENT_WRENCH)
+        self._applied = Moment(node, contract.APPLIED_WRENCH)
         latest = contract.qos_latched(1)
         self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
         self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
@@ -77,6 +77,7 @@ class Observer:
         stamp_ns = to_ns(joints.header.stamp)
         if stamp_ns != self._stamp_ns:  # a simulator that stands still repeats its last tick
             self._stamp_ns, self._moved_at = stamp_ns, now
+        scene.q = q
         self._tray = self._model.tray_pose(q)
         scene.pitch = pitch(self._tray[1])
 
@@ -89,7 +90,8 @@ class Observer:
                                    f'position {in_base}')
             return
         origin, rotation = self._tray
-        scene.ball_along, _, scene.ball_height = (rotation.T @ (in_base - origin)).tolist()
+        scene.ball, scene.ball_on_tray = in_base, rotation.T @ (in_base - origin)
+        scene.ball_along, _, scene.ball_height = scene.ball_on_tray.tolist()
 
     @staticmethod
     def _latest(topic: Polled, before: float | None) -> float | None:
@@ -100,7 +102,7 @@ class Observer:
         self._log.error(f'not shown, a message on {topic.topic_name}: {what}', throttle_duration_sec=1.0)
 
 
-class _Moment:
+class Moment:
     """M_y of a wrench topic; None when it is silent."""
 
     def __init__(self, node: Node, topic: contract.Topic):
@@ -109,6 +111,7 @@ class _Moment:
         self._heard_at = -math.inf
 
     def update(self, now: float) -> float | None:
+        """M_y, N m, at ``now`` of the monotonic clock."""
         message: WrenchStamped | None = self._topic.take()
         if message is not None:
             m_y = message.wrench.torque.y

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 
 @dataclass
 class Scene:
@@ -9,6 +11,12 @@ class Scene:
 
     pitch: float | None = None
     """Of the tray, rad; positive: the left of the picture (base +x) is down."""
+    q: np.ndarray | None = None
+    """Joint positions, (7,), rad."""
+    ball: np.ndarray | None = None
+    """In the base frame, (3,), m."""
+    ball_on_tray: np.ndarray | None = None
+    """In the tray's frame, (3,), m."""
     ball_along: float | None = None
     """The ball's offset from the middle of the tray along its x axis, m; positive: left in the picture."""
     ball_height: float | None = None

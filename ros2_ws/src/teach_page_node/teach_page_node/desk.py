@@ -1,0 +1,29 @@
+"""What the page's server needs from whoever stands behind it: a running graph, or a recorded session."""
+
+from typing import Any, Protocol
+
+from .picture import Picture
+
+
+class Desk(Protocol):
+    """A live lesson or a replay."""
+
+    is_replay: bool
+    is_over: bool
+    """The server is to end."""
+
+    def look(self) -> Picture:
+        """What is to be seen now; called once a picture."""
+
+    def press(self, buttons: list[int]) -> None:
+        """The teacher's buttons (left, right, space), 0 or 1; again and again while nothing changes."""
+
+    def let_go(self) -> None:
+        """The teacher has gone, or looks elsewhere: M_yh = 0."""
+
+    def do(self, command: str, value: Any) -> None:
+        """A button of the page.
+
+        Raises:
+            ValueError: there is no such command, or the value does not fit it.
+        """

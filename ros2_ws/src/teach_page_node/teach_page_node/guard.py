@@ -1,0 +1,79 @@
+"""Who may speak to the page's server.
+
+A server on the loopback interface is still within reach of every web page that the person has open: a foreign page can
+open a WebSocket to it, or get there under a name of its own (DNS rebinding). So the names of host and origin are looked
+at, and who opens the server to the network needs a token.
+"""
+
+import secrets
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import parse_qs, urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+LOOPBACK = ('127.0.0.1', 'localhost', '::1')
+COOKIE = 'teach_page_token'
+
+
+class Guard:
+    """ASGI middleware.
+
+    Args:
+        app: what is guarded.
+        token: None: serve this machine only. Otherwise whoever has it is let in: once as ``?token=``, then by a cookie.
+    """
+
+    def __init__(self, app: ASGIApp, token: str | None):
+        self._app = app
+        self._token = token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let in or refuse one request."""
+        if scope['type'] not in ('http', 'websocket'):
+            await self._app(scope, receive, send)
+            return
+        refusal = self._refusal(scope)
+        if refusal is None:
+            await self._app(scope, receive, self._with_cookie(scope, send))
+        elif scope['type'] == 'websocket':
+            await send({'type': 'websocket.close', 'code': 1008, 'reason': refusal})
+        else:
+            await PlainTextResponse(refusal, status_code=403)(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> str | None:
+        headers = Headers(scope=scope)
+        host = headers.get('host', '')
+        if self._token is None and urlsplit(f'//{host}').hostname not in LOOPBACK:
+            return f'this page is served to this machine only, not as {host!r}'
+        origin = headers.get('origin')
+        if origin is not None and urlsplit(origin).netloc != host:
+            return f'pages of {origin!r} may not speak to this one'
+        if self._token is not None and not any(
+                secrets.compare_digest(given.encode(), self._token.encode()) for given in _tokens(scope, headers)):
+            return 'the address must end with the ?token=... that the session printed'
+        return None
+
+    def _with_cookie(self, scope: Scope, send: Send) -> Send:
+        if self._token is None or not _query_tokens(scope):
+            return send
+
+        async def send_with_cookie(message: Message) -> None:
+            if message['type'] == 'http.response.start':
+                MutableHeaders(scope=message).append(
+                    'set-cookie', f'{COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/')
+            await send(message)
+        return send_with_cookie
+
+
+def _query_tokens(scope: Scope) -> list[str]:
+    return parse_qs(scope.get('query_string', b'').decode('latin-1')).get('token', [])
+
+
+def _tokens(scope: Scope, headers: Headers) -> list[str]:
+    try:
+        cookie = SimpleCookie(headers.get('cookie', '')).get(COOKIE)
+    except CookieError:
+        cookie = None
+    return _query_tokens(scope) + ([] if cookie is None else [cookie.value])

@@ -1,0 +1,169 @@
+"""What stands where on the page. What moves is moved by ``static/page.js``, which finds it by ``data-part``."""
+
+from typing import Any
+
+from nicegui import ui
+
+from .arm_scene import build_scene
+
+_KEYS = (('left', '←', 'tip left'), ('space', '␣', 'let go'), ('right', '→', 'tip right'))
+_MOMENTS = (('human', 'you'), ('agent', 'robot'), ('applied', 'together'))
+
+
+def build(is_replay: bool) -> None:
+    """One page."""
+    ui.add_head_html('<link rel="stylesheet" href="/static/page.css">')
+    ui.query('body').classes('replay' if is_replay else 'live')
+    with ui.element('main'):
+        _header()
+        with ui.element('section').classes('stage'):
+            scene = build_scene().classes('scene').props('data-part=scene')
+            with ui.element('div').classes('close-view'):
+                _moments()
+                ui.html(_CLOSE_VIEW, sanitize=False).classes('drawing')
+            if is_replay:
+                _player()
+            else:
+                _keys()
+        with ui.element('aside'):
+            _help(is_replay)
+            charts = {'moments': _chart('Moments, N m', _moment_options()),
+                      'returns': _chart('Return of each episode', _episode_options('#4c6ef5')),
+                      'shares': _chart('Your share of each episode, %', _episode_options('#f08a24', 100))}
+            if not is_replay:
+                _buttons()
+    _part('focus', 'button').classes('veil')
+    ids = {'scene': scene.id, **{name: chart.id for name, chart in charts.items()}}
+    ui.add_body_html(f'<script>window.teachPage = {ids}</script><script type="module" src="/static/page.js"></script>')
+
+
+def _part(name: str, tag: str = 'div') -> ui.element:
+    return ui.element(tag).props(f'data-part={name}')
+
+
+def _text(name: str, text: str = '') -> ui.label:
+    return ui.label(text).props(f'data-part={name}')
+
+
+def _header() -> None:
+    with ui.element('header'):
+        _text('phase', 'Connecting …').classes('phase')
+        _text('doing').classes('doing')
+        with ui.element('div').classes('clock'):
+            _text('time-left')
+            with ui.element('div').classes('bar'):
+                _part('time-bar')
+        with ui.element('div').classes('score'):
+            ui.label('robot alone, last test')
+            _text('success', 'not yet')
+        _text('role').classes('role')
+
+
+def _keys() -> None:
+    with ui.element('div').classes('keys'):
+        for name, sign, what in _KEYS:
+            with ui.element('button').classes('key').props(f'data-key={name} tabindex=-1'):
+                ui.label(sign).classes('sign')
+                ui.label(what)
+
+
+def _player() -> None:
+    with ui.element('div').classes('player'):
+        _button('play', 'Play')
+        ui.element('input').props('data-part=slider type=range min=0 max=1 step=0.01 value=0')
+        _text('position')
+        with ui.element('select').props('data-part=speed'):
+            for speed in ('0.25', '0.5', '1', '2', '4', '8'):
+                ui.html(f'{speed} ×', sanitize=False, tag='option').props(f'value={speed}')
+
+
+def _help(is_replay: bool) -> None:
+    with ui.element('ol').classes('help'):
+        for line in _REPLAY_HELP if is_replay else _HELP:
+            ui.html(line, sanitize=False, tag='li')
+
+
+def _moments() -> None:
+    with ui.element('div').classes('moments'):
+        for name, who in _MOMENTS:
+            with ui.element('div').classes(name):
+                ui.label(who)
+                _text(f'{name}-moment', '–').classes('number')
+
+
+def _chart(title: str, options: dict[str, Any]) -> ui.echart:
+    with ui.element('div').classes('chart'):
+        ui.label(title)
+        return ui.echart(options)
+
+
+def _buttons() -> None:
+    with ui.element('div').classes('buttons'):
+        _button('start', 'Start teaching').classes('main')
+        _button('pause', 'Pause')
+        _button('repeat', 'Repeat episode')
+        _button('finish', 'It has learned it').classes('main')
+        _button('stop', 'Stop')
+        _button('take-seat', 'Teach from here').classes('main')
+
+
+def _button(name: str, text: str) -> ui.element:
+    with ui.element('button').props(f'data-part={name} tabindex=-1') as button:
+        ui.label(text)
+    return button
+
+
+def _axes() -> dict[str, Any]:
+    return {'animation': False, 'grid': {'left': 42, 'right': 10, 'top': 8, 'bottom': 22},
+            'tooltip': {'trigger': 'axis', 'confine': True}}
+
+
+def _moment_options() -> dict[str, Any]:
+    series = [('you', '#f08a24', 2), ('robot', '#4c6ef5', 1), ('sum', '#868e96', 1)]
+    return {**_axes(),
+            'xAxis': {'type': 'value', 'min': -15, 'max': 0, 'interval': 5, 'axisLabel': {'formatter': '{value} s'}},
+            'yAxis': {'type': 'value', 'min': -20, 'max': 20, 'interval': 10},
+            'series': [{'name': name, 'type': 'line', 'step': 'end', 'symbol': 'none', 'data': [],
+                        'lineStyle': {'color': colour, 'width': width}, 'itemStyle': {'color': colour}}
+                       for name, colour, width in series]}
+
+
+def _episode_options(colour: str, top: float | None = None) -> dict[str, Any]:
+    return {**_axes(),
+            'xAxis': {'type': 'category', 'data': []},
+            'yAxis': {'type': 'value', 'scale': top is None, 'min': None if top is None else 0, 'max': top,
+                      'splitNumber': 3},
+            'series': [{'type': 'line', 'data': [], 'symbolSize': 6, 'lineStyle': {'color': colour},
+                        'itemStyle': {'color': colour}, 'areaStyle': {'opacity': 0.12}}]}
+
+
+_HELP = (
+    'Bring the ball to rest on the <b class="goal">green middle</b>.',
+    '<kbd>←</kbd> and <kbd>→</kbd> tip the tray, more with each press; <kbd>space</kbd> lets go.',
+    'Correct the robot when it errs, let go when it does well.')
+_REPLAY_HELP = (
+    'A recorded session: move the slider, or press <kbd>space</kbd> to play and to hold.',
+    '<kbd>←</kbd> and <kbd>→</kbd> go back and on by 5 s.',
+    'The keys that the teacher pressed show as the arrow of <i>you</i>.')
+
+_CLOSE_VIEW = """
+<svg viewBox="-240 -62 480 160" data-part="close-view" role="img" aria-label="The tray from the front">
+  <defs><marker id="tip" viewBox="0 0 10 10" refX="6" refY="5" markerWidth="3.2" markerHeight="3.2" orient="auto">
+    <path d="M0 0L10 5L0 10z" fill="context-stroke"/></marker></defs>
+  <line x1="-238" x2="238" y1="0" y2="0" class="level"/>
+  <g data-part="tilt">
+    <rect x="-205" y="0" width="410" height="8" rx="2" class="tray"/>
+    <rect x="-205" y="-12" width="6" height="14" class="tray"/>
+    <rect x="199" y="-12" width="6" height="14" class="tray"/>
+    <rect x="-20" y="0" width="40" height="8" class="goal"/>
+    <ellipse data-part="close-shadow" cy="0.5" rx="14" ry="3" class="shadow"/>
+    <circle data-part="close-ball" r="15" class="ball"/>
+  </g>
+  <text x="-238" y="-46" data-part="tilt-text" class="tilt-text"></text>
+  <g class="arrows">
+    <line x1="0" x2="0" y1="46" y2="98" class="level"/>
+    <line data-part="arrow-human" y1="56" y2="56" class="human"/>
+    <line data-part="arrow-agent" y1="72" y2="72" class="agent"/>
+    <line data-part="arrow-applied" y1="90" y2="90" class="applied"/>
+  </g>
+</svg>"""

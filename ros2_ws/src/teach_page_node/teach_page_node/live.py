@@ -1,0 +1,143 @@
+"""The running graph: what the page shows of it, and what it may ask for."""
+
+import time
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.node import Node
+from sensor_msgs.msg import Joy
+from shared_control.human.keystrokes import Key, KeyPresses
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Background, Polled
+from teleop_key_node.lesson import Lesson
+from teleop_key_node.observer import Moment, Observer
+from teleop_key_node.scene import Scene
+
+from .history import History
+from .page_requests import PageRequests
+from .picture import Picture
+
+SOURCE = 'page'
+"""The frame_id of the page's keys."""
+LIT_FOR = 0.15
+"""A key that was pressed is lit for this long at least, s."""
+NOTICE_FOR = 8.0
+"""s"""
+
+
+class LiveDesk:
+    """See :class:`Desk`. All that it does is quick: it is called from the server's event loop."""
+
+    is_replay = False
+
+    def __init__(self, node: Node):
+        self.is_over = False
+        self._node = node
+        self._observer = Observer(node)
+        self._scene = Scene()
+        self._lesson = Lesson(node)
+        self._restarts = 0
+        self._human = Moment(node, contract.HUMAN_WRENCH)
+        self._heard = Polled(node, contract.KEYS, depth=50)
+        self._presses: dict[str, KeyPresses] = {}
+        self._hand = ''
+        self._lit_until = [0.0] * len(Key)
+        self._history = History()
+        self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
+        self._joy = Joy(buttons=[0] * len(Key))
+        self._joy.header.frame_id = SOURCE
+        self._requests = PageRequests(node, self._tell)
+        self._background = Background(node)
+        self._notice_until = 0.0
+        self._paused_stamp_ns = 0
+
+    def look(self) -> Picture:
+        """See :class:`Desk`."""
+        if self._requests.is_pending:
+            self._background.spin_once(0.0)
+        self._requests.expire()
+        self._lesson.update()
+        now = time.monotonic()
+        scene = self._scene
+        self._follow(scene)
+        self._hear_keys(now)
+        if now > self._notice_until:
+            scene.message = ''
+        return Picture(
+            q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch,
+            m_y_human=self._human.update(now), m_y_agent=scene.m_y_agent, m_y_applied=scene.m_y_applied,
+            phase=self._lesson.phase, episode=self._lesson.episode, time_left=scene.time_left,
+            human_share=scene.human_share, success=scene.success, keys=[int(now < lit) for lit in self._lit_until],
+            hand=self._hand, paused=self._requests.paused, silent_for=scene.simulator_silent_for,
+            notice=scene.message.strip(), time=max(self._observer.stamp_ns, 0) * 1e-9, history=self._history)
+
+    def _follow(self, scene: Scene) -> None:
+        """Bring the scene and the list of episodes up to date."""
+        if self._lesson.restarts != self._restarts:
+            self._restarts = self._lesson.restarts
+            if self._lesson.phase == 'teach':  # a test counts from 1, too
+                self._history.returns.clear()
+                self._history.shares.clear()
+        known, share = len(scene.returns), scene.human_share
+        self._observer.update(scene)
+        if self._requests.paused and self._observer.stamp_ns > self._paused_stamp_ns + 500_000_000:
+            self._requests.paused = False  # somebody else let it go on
+        new = scene.returns[known:]
+        if self._lesson.phase not in ('test', 'done'):
+            for value in new:
+                self._history.add(value, share if len(new) == 1 else None)
+
+    def _hear_keys(self, now: float) -> None:
+        while (joy := self._heard.take()) is not None:
+            source = joy.header.frame_id
+            try:
+                pressed = self._presses.setdefault(source, KeyPresses()).update(joy.buttons)
+            except ValueError:
+                continue  # teleop_key_node complains
+            if pressed:
+                self._hand = source
+            for key in Key:
+                if joy.buttons[key]:
+                    self._lit_until[key] = now + LIT_FOR
+
+    def press(self, buttons: list[int]) -> None:
+        """See :class:`Desk`."""
+        self._joy.header.stamp = self._node.get_clock().now().to_msg()
+        self._joy.buttons = buttons
+        self._keys.publish(self._joy)
+
+    def let_go(self) -> None:
+        """See :class:`Desk`. The space key says so at once; silence would say it after half a second."""
+        released = [0] * len(Key)
+        space = released.copy()
+        space[Key.SPACE] = 1
+        for buttons in (released, space, released):
+            self.press(buttons)
+
+    def do(self, command: str, value: Any) -> None:
+        """See :class:`Desk`."""
+        if command == 'pause':
+            self._paused_stamp_ns = self._observer.stamp_ns
+            self._requests.toggle_pause()
+        elif command == 'repeat':
+            if self._requests.paused:
+                self._requests.toggle_pause()
+            self._requests.repeat()
+        elif command == 'start':
+            self._requests.start()
+        elif command == 'finish':
+            self._requests.finish()
+        elif command == 'stop':
+            self.is_over = True
+        else:
+            raise ValueError(f'no command {command!r}')
+
+    def _tell(self, text: str) -> None:
+        self._scene.message = text
+        self._notice_until = time.monotonic() + NOTICE_FOR
+
+    def close(self) -> None:
+        """Leave no moment behind."""
+        self.let_go()
+        self._keys.wait_for_all_acked(Duration(nanoseconds=200_000_000))
+        self._background.close()

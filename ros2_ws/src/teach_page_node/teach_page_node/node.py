@@ -1,0 +1,48 @@
+"""A page to teach from: the arm, the tray and the ball in 3D, the keys, the lesson.
+
+Publishes /human/keys and shows what it hears. Open the address that it prints; one page teaches, others watch.
+"""
+
+import asyncio
+
+from rclpy.node import Node
+from shared_control_ros.parameters import declare
+from shared_control_ros.runner import Stop, run
+
+from .live import LiveDesk
+from .server import PageServer
+
+
+class TeachPageNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('teach_page_node')
+        host = declare(
+            node, 'host', '127.0.0.1', "Address to listen on. Another than loopback's opens the page to the network, "
+            'and then it needs a token.')
+        port = declare(node, 'port', 8088, 'Port to listen on; 0: any that is free.', minimum=0, maximum=65535)
+        token = declare(node, 'token', '', 'What the address must end with when the page is open to the network; '
+                        'empty: made anew at every start.')
+        frame_rate = declare(
+            node, 'frame_rate', 40.0, 'Pictures that are sent.', unit='Hz', minimum=1.0, maximum=100.0)
+        self._desk = LiveDesk(node)
+        self._server = PageServer(self._desk, host, port, frame_rate, token)
+
+    def run(self, stop: Stop) -> None:
+        """Serve the page until told to stop."""
+        self.node.get_logger().info(f'open {self._server.address}')
+        asyncio.run(self._server.serve(lambda: stop.requested))
+
+    def close(self) -> None:
+        """Leave no moment behind."""
+        self._desk.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(TeachPageNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

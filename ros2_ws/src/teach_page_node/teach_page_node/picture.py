@@ -1,0 +1,66 @@
+"""What the page shows at one moment, as the browser gets it."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from .history import History
+
+
+@dataclass
+class Picture:
+    """One moment; None is what nobody has said (yet). SI units, positions in the base frame."""
+
+    q: np.ndarray | None = None
+    """(7,), rad"""
+    ball: np.ndarray | None = None
+    """(3,), m"""
+    ball_on_tray: np.ndarray | None = None
+    """(3,), m: along, across and above the tray, in its frame."""
+    pitch: float | None = None
+    """Of the tray, rad; positive: the left of the picture (base +x) is down."""
+    m_y_human: float | None = None
+    """N m"""
+    m_y_agent: float | None = None
+    """N m"""
+    m_y_applied: float | None = None
+    """The sum as the controller applies it, N m."""
+    phase: str | None = None
+    episode: int | None = None
+    time_left: float | None = None
+    """Of the episode, s."""
+    human_share: float | None = None
+    """0..1"""
+    success: float | None = None
+    """Of the last test, 0..1."""
+    keys: list[int] = field(default_factory=lambda: [0, 0, 0])
+    """Left, right, space: 1 while lit."""
+    hand: str = ''
+    """The source of the latest key press."""
+    paused: bool = False
+    silent_for: float | None = None
+    """How long the robot has said nothing, s; None: it speaks."""
+    notice: str = ''
+    time: float = 0.0
+    """Of the charts, s: the robot's, or that of the replay."""
+    history: History = field(default_factory=History)
+    replay: dict[str, Any] | None = None
+    """Position, length (s), speed and whether it plays."""
+
+    def message(self) -> dict[str, Any]:
+        """For the browser, without the history."""
+        return {
+            'q': _rounded(self.q), 'ball': _rounded(self.ball), 'on_tray': _rounded(self.ball_on_tray),
+            'pitch': _rounded(self.pitch), 'human': _rounded(self.m_y_human), 'agent': _rounded(self.m_y_agent),
+            'applied': _rounded(self.m_y_applied), 'phase': self.phase, 'episode': self.episode,
+            'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share), 'success': self.success,
+            'keys': self.keys, 'hand': self.hand, 'paused': self.paused, 'silent_for': _rounded(self.silent_for),
+            'notice': self.notice, 'time': _rounded(self.time), 'replay': self.replay}
+
+
+def _rounded(value: float | np.ndarray | None) -> Any:
+    """0.1 mm and 0.1 mrad are finer than a screen."""
+    if value is None:
+        return None
+    return [round(float(v), 4) for v in value] if isinstance(value, np.ndarray) else round(float(value), 4)

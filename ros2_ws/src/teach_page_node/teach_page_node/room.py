@@ -1,0 +1,128 @@
+"""Who is at the page: one teaches, the others watch."""
+
+import asyncio
+import json
+import logging
+from typing import Any
+
+from fastapi import WebSocket, WebSocketDisconnect
+
+from .desk import Desk
+from .history import History
+
+log = logging.getLogger(__name__)
+
+
+class Visitor:
+    """A page that is open somewhere. A slow one misses pictures, and delays nobody."""
+
+    def __init__(self, socket: WebSocket):
+        self.socket = socket
+        self._words: list[str] = []
+        self._picture: str | None = None
+        self._news = asyncio.Event()
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """Send this, whatever else there is."""
+        self._words.append(json.dumps(message))
+        self._news.set()
+
+    def show(self, picture: str) -> None:
+        """Send this unless a newer picture comes first."""
+        self._picture = picture
+        self._news.set()
+
+    async def serve(self) -> None:
+        """Send what there is to send, until the page is gone."""
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            words, self._words = self._words, []
+            picture, self._picture = self._picture, None
+            for text in words + ([] if picture is None else [picture]):
+                await self.socket.send_text(text)
+
+
+class Room:
+    """All visitors, and the one whose keys count.
+
+    The first to come teaches. When the teacher goes, the others go on watching until one of them takes the seat.
+    """
+
+    def __init__(self, desk: Desk):
+        self._desk = desk
+        self._visitors: list[Visitor] = []
+        self._teacher: Visitor | None = None
+        self._history: dict[str, Any] = History().message()
+
+    async def receive(self, socket: WebSocket) -> None:
+        """Serve one page from its coming to its going."""
+        await socket.accept()
+        visitor = Visitor(socket)
+        self._visitors.append(visitor)
+        if len(self._visitors) == 1:
+            self._teacher = visitor
+        visitor.tell({'history': self._history})
+        self._tell_roles()
+        sender = asyncio.create_task(visitor.serve())
+        try:
+            async for text in socket.iter_text():
+                self._hear(visitor, text)
+        except WebSocketDisconnect:
+            pass
+        finally:
+            sender.cancel()
+            self._leave(visitor)
+
+    def show(self) -> None:
+        """A picture for everybody."""
+        picture = self._desk.look()
+        history = picture.history.message()
+        if history != self._history:
+            self._history = history
+            for visitor in self._visitors:
+                visitor.tell({'history': history})
+        if self._visitors:
+            text = json.dumps({'picture': picture.message()})
+            for visitor in self._visitors:
+                visitor.show(text)
+
+    def _leave(self, visitor: Visitor) -> None:
+        self._visitors.remove(visitor)
+        if visitor is self._teacher:
+            self._teacher = None
+            self._desk.let_go()
+        self._tell_roles()
+
+    def _tell_roles(self) -> None:
+        for visitor in self._visitors:
+            visitor.tell({'role': {'teaches': visitor is self._teacher, 'seat_is_free': self._teacher is None,
+                                   'watchers': len(self._visitors) - (self._teacher is not None)}})
+
+    def _hear(self, visitor: Visitor, text: str) -> None:
+        """What a page says: ``{"keys": [0, 1, 0]}``, ``{"let_go": true}``, ``{"do": command, "value": ...}``."""
+        try:
+            message = json.loads(text)
+            if message == {'do': 'take_seat'}:
+                self._take_seat(visitor)
+            elif visitor is not self._teacher:
+                return
+            elif 'keys' in message:
+                self._desk.press(_buttons(message['keys']))
+            elif 'let_go' in message:
+                self._desk.let_go()
+            else:
+                self._desk.do(message['do'], message.get('value'))
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            log.warning('dropped a message of a page: %s (%.100r)', error, text)
+
+    def _take_seat(self, visitor: Visitor) -> None:
+        if self._teacher is None:
+            self._teacher = visitor
+            self._tell_roles()
+
+
+def _buttons(value: Any) -> list[int]:
+    if not (isinstance(value, list) and len(value) == 3 and all(type(v) is int and v in (0, 1) for v in value)):
+        raise ValueError('expected three buttons of 0 or 1')
+    return value

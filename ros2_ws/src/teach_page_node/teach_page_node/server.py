@@ -1,0 +1,87 @@
+"""The web server of the page: NiceGUI's files, the page, and one WebSocket for pictures and keys."""
+
+import asyncio
+import secrets
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+import uvicorn
+from fastapi import FastAPI, WebSocket
+from fastapi.staticfiles import StaticFiles
+from nicegui import ui
+
+from .desk import Desk
+from .guard import LOOPBACK, Guard
+from .layout import build
+from .room import Room
+
+STATIC = Path(__file__).parent / 'static'
+GONE_AFTER = 2.0
+"""A browser that does not answer for this long is gone, s."""
+
+
+class PageServer:
+    """Serves the page.
+
+    Args:
+        desk: what is shown, and who hears the keys.
+        host: address to listen on; another than loopback's needs a token, which is made when none is given.
+        port: 0 takes any that is free.
+        frame_rate: pictures a second.
+        token: see :class:`Guard`.
+
+    Raises:
+        OSError: the address cannot be had; the message names it.
+    """
+
+    def __init__(self, desk: Desk, host: str, port: int, frame_rate: float, token: str = ''):
+        self._desk = desk
+        self._period = 1.0 / frame_rate
+        self._token = None if host in LOOPBACK else token or secrets.token_urlsafe(16)
+        family = socket.AF_INET6 if ':' in host else socket.AF_INET
+        try:
+            self._socket = socket.create_server((host, port), family=family)
+        except OSError as error:
+            raise OSError(f'cannot serve the page at {host}:{port} ({error.strerror}): name another host or port, '
+                          'port 0 for any that is free') from error
+        self._room = Room(desk)
+
+    @property
+    def address(self) -> str:
+        """What to open in a browser."""
+        host, port = self._socket.getsockname()[:2]
+        if host in ('0.0.0.0', '::'):
+            host = socket.gethostname()
+        name = f'[{host}]' if ':' in host else host
+        return f'http://{name}:{port}/' + (f'?token={self._token}' if self._token else '')
+
+    async def serve(self, stop_requested: Callable[[], bool]) -> None:
+        """Serve until told to stop, by a signal or by the desk."""
+        app = FastAPI(openapi_url=None)
+        app.mount('/static', StaticFiles(directory=STATIC), name='static')
+
+        @app.websocket('/live')
+        async def live(websocket: WebSocket) -> None:
+            await self._room.receive(websocket)
+
+        ui.run_with(app, root=lambda: build(self._desk.is_replay), title='Teach the robot', tailwind=False, favicon='⚖️',
+                    binding_refresh_interval=None, show_welcome_message=False)
+        server = uvicorn.Server(uvicorn.Config(
+            Guard(app, self._token), log_level='warning', access_log=False, lifespan='on',
+            ws_max_size=65536, ws_per_message_deflate=False, ws_ping_interval=GONE_AFTER, ws_ping_timeout=GONE_AFTER,
+            timeout_graceful_shutdown=1))
+        drawing = asyncio.create_task(self._draw(server, stop_requested))
+        await server.serve(sockets=[self._socket])
+        await drawing
+
+    async def _draw(self, server: uvicorn.Server, stop_requested: Callable[[], bool]) -> None:
+        loop = asyncio.get_running_loop()
+        due = loop.time()
+        try:
+            while not (server.should_exit or stop_requested() or self._desk.is_over):
+                self._room.show()
+                due = max(due + self._period, loop.time())
+                await asyncio.sleep(due - loop.time())
+        finally:
+            server.should_exit = True

@@ -1,0 +1,41 @@
+// Three charts: the moments of the last seconds, and what each episode came to.
+
+const SECONDS = 15;
+const SAMPLE_EVERY = 0.05;
+const DRAW_EVERY_MS = 200;
+
+const chart = (name) => window.getElement(window.teachPage[name]).chart;
+
+let samples = []; // [time, human, agent, applied]
+let drawnAt = 0;
+let history = null;
+
+export function showMoments(picture) {
+  const last = samples.length ? samples[samples.length - 1][0] : -Infinity;
+  if (picture.time < last || picture.time > last + SECONDS) samples = []; // another run, or another place in a replay
+  if (picture.time > last + SAMPLE_EVERY || !samples.length) {
+    samples.push([picture.time, picture.human, picture.agent, picture.applied]);
+    while (samples[0][0] < picture.time - SECONDS) samples.shift();
+  }
+  const now = performance.now();
+  if (now - drawnAt < DRAW_EVERY_MS) return;
+  drawnAt = now;
+  chart("moments")?.setOption({
+    series: [1, 2, 3].map((column) => ({ data: samples.map((s) => [s[0] - picture.time, s[column]]) })),
+  });
+  if (history !== null) drawHistory();
+}
+
+export function showHistory(newHistory) {
+  history = newHistory;
+  drawHistory();
+}
+
+function drawHistory() {
+  const [returns, shares] = [chart("returns"), chart("shares")];
+  if (!returns || !shares) return; // drawn with the next picture
+  const xAxis = { data: history.returns.map((_, i) => i + 1) };
+  returns.setOption({ xAxis, series: [{ data: history.returns }] });
+  shares.setOption({ xAxis, series: [{ data: history.shares.map((s) => (s === null ? null : Math.round(100 * s))) }] });
+  history = null;
+}

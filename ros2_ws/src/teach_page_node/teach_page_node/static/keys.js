@@ -1,0 +1,85 @@
+// The three keys: of the keyboard, and those on the page for mouse and finger.
+//
+// The state goes out at every change and, as a sign of life, every 100 ms. When the window loses the focus, is hidden or
+// is left, the page says so and falls silent: either makes the human's moment zero.
+
+import { part } from "./parts.js";
+
+const REPEAT_MS = 100;
+const NAMES = ["left", "right", "space"];
+const CODES = { ArrowLeft: 0, KeyA: 0, ArrowRight: 1, KeyD: 1, Space: 2 };
+
+export function listenToKeys(send) {
+  const held = [new Set(), new Set(), new Set()]; // by what: a key's code, or a pointer
+  let isActive = false;
+  let hasFocus = document.hasFocus() && !document.hidden;
+
+  const state = () => held.map((by) => (by.size ? 1 : 0));
+  const counts = () => isActive && hasFocus;
+
+  function tell() {
+    if (counts()) send({ keys: state() });
+    light();
+  }
+  function light() {
+    state().forEach((down, i) => key(i).classList.toggle("down", counts() && down === 1));
+  }
+  function letGo() {
+    held.forEach((by) => by.clear());
+    if (isActive) send({ let_go: true });
+    light();
+  }
+  function setFocus(has) {
+    if (hasFocus && !has) letGo();
+    hasFocus = has;
+    part("focus").classList.toggle("shown", isActive && !hasFocus);
+  }
+  const key = (i) => document.querySelector(`[data-key="${NAMES[i]}"]`);
+
+  window.addEventListener("keydown", (event) => {
+    const i = CODES[event.code];
+    if (i === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+    event.preventDefault(); // no scrolling, and no button pressed by the space bar
+    setFocus(true); // a key that arrives here proves it
+    if (!event.repeat) {
+      held[i].add(event.code);
+      tell();
+    }
+  }, true);
+  window.addEventListener("keyup", (event) => {
+    const i = CODES[event.code];
+    if (i === undefined) return;
+    event.preventDefault();
+    if (held[i].delete(event.code)) tell();
+  }, true);
+
+  NAMES.forEach((_, i) => {
+    key(i).addEventListener("pointerdown", (event) => {
+      event.preventDefault();
+      key(i).setPointerCapture(event.pointerId);
+      held[i].add(event.pointerId);
+      tell();
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      key(i).addEventListener(end, (event) => {
+        if (held[i].delete(event.pointerId)) tell();
+      });
+    }
+    key(i).addEventListener("contextmenu", (event) => event.preventDefault());
+  });
+
+  window.addEventListener("blur", () => setFocus(false));
+  window.addEventListener("focus", () => setFocus(true));
+  window.addEventListener("pagehide", letGo);
+  document.addEventListener("visibilitychange", () => setFocus(!document.hidden && document.hasFocus()));
+  setInterval(() => counts() && send({ keys: state() }), REPEAT_MS);
+
+  return {
+    setActive(active) {
+      if (isActive && !active) held.forEach((by) => by.clear());
+      isActive = active;
+      setFocus(document.hasFocus() && !document.hidden);
+      light();
+    },
+  };
+}

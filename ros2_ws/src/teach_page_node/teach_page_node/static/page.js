@@ -1,0 +1,50 @@
+// Puts the parts of the page together: what comes from the server is shown, what the person does is sent.
+
+import { connect } from "./live.js";
+import { listenToKeys } from "./keys.js";
+import { listenToPlayer, showPlayer } from "./player.js";
+import { showHistory, showMoments } from "./charts.js";
+import { showScene } from "./scene.js";
+import { showCloseView } from "./close_view.js";
+import { showConnection, showPicture, showRole } from "./panel.js";
+import { isMounted, part } from "./parts.js";
+
+while (!isMounted()) await new Promise((resolve) => setTimeout(resolve, 50)); // NiceGUI builds the page after this is loaded
+
+const isReplay = document.body.classList.contains("replay");
+
+// For whoever measures.
+window.teachPage.pictures = 0;
+
+const keys = isReplay ? null : listenToKeys((message) => live.send(message));
+const live = connect({
+  picture(picture) {
+    window.teachPage.pictures += 1;
+    window.teachPage.picture = picture;
+    showPicture(picture, isReplay);
+    showScene(picture);
+    showCloseView(picture);
+    showMoments(picture);
+    if (isReplay) showPlayer(picture.replay);
+  },
+  history: showHistory,
+  role(role) {
+    keys?.setActive(role.teaches);
+    showRole(role, isReplay);
+  },
+  connection(isUp) {
+    if (!isUp) keys?.setActive(false);
+    showConnection(isUp);
+  },
+});
+
+if (isReplay) {
+  listenToPlayer(live.send);
+} else {
+  for (const name of ["start", "pause", "repeat", "finish", "take_seat"]) {
+    part(name.replace("_", "-")).addEventListener("click", () => live.send({ do: name }));
+  }
+  part("stop").addEventListener("click", () => {
+    if (confirm("Stop the session? Everything so far is kept.")) live.send({ do: "stop" });
+  });
+}

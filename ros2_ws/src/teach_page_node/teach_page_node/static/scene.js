@@ -1,0 +1,39 @@
+// Moves the arm, the ball and its shadow in NiceGUI's three.js scene.
+
+const SURFACE = 0.0069; // of the tray and its goal, in the tray's frame, m
+const ON_TRAY = [0.2, 0.05]; // half its length and width, m
+
+const FEWEST_A_SECOND = 30;
+const COARSEST = 0.4;
+
+let meshes = null;
+let ratio = window.devicePixelRatio;
+let drawn = 0;
+
+// Without a graphics card a smaller picture is drawn rather than a jerky one.
+setInterval(() => {
+  const { renderer } = window.getElement(window.teachPage.scene);
+  const before = drawn;
+  drawn = renderer.info.render.frame;
+  if (document.hidden || drawn - before >= 2 * FEWEST_A_SECOND || ratio <= COARSEST) return;
+  ratio = Math.max(COARSEST, 0.8 * ratio);
+  renderer.setPixelRatio(ratio);
+}, 2000);
+
+function findMeshes() {
+  const view = window.getElement(window.teachPage.scene);
+    const named = {};
+  for (const { mesh } of view.objects.values()) if (mesh?.name) named[mesh.name] = mesh;
+  return "shadow" in named && "ball" in named && "joint7" in named ? named : null;
+}
+
+export function showScene(picture) {
+  if (meshes === null || !meshes.ball.parent) meshes = findMeshes();
+  if (meshes === null) return;
+  picture.q?.forEach((angle, i) => (meshes[`joint${i + 1}`].rotation.z = angle));
+  meshes.ball.visible = picture.ball !== null;
+  if (picture.ball) meshes.ball.position.set(...picture.ball);
+  const [along, across, above] = picture.on_tray ?? [1, 1, -1];
+  meshes.shadow.visible = above > 0 && Math.abs(along) < ON_TRAY[0] && Math.abs(across) < ON_TRAY[1];
+  meshes.shadow.position.set(along, across, SURFACE);
+}
