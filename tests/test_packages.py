@@ -1,0 +1,113 @@
+"""Every package of the workspace: complete for colcon, rosdep, ``ros2 run`` and pip."""
+
+import ast
+import re
+import sys
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = sorted(path.parent for path in (ROOT / 'ros2_ws' / 'src').glob('*/package.xml'))
+NAMES = {package.name for package in PACKAGES}
+ROSDEP = {
+    'numpy': 'python3-numpy', 'yaml': 'python3-yaml', 'matplotlib': 'python3-matplotlib', 'jinja2': 'python3-jinja2',
+    'scipy': 'python3-scipy', 'pandas': 'python3-pandas', 'tqdm': 'python3-tqdm'}
+"""Keys of modules that a Jazzy machine gets from Debian packages."""
+PIP = {'pinocchio': 'pin', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
+"""Where modules come from that are in no distribution of their name."""
+ROS = {'rclpy', 'launch', 'launch_ros'}
+FOR_TESTS = {'pytest'}
+
+
+def tree(package):
+    return ElementTree.parse(package / 'package.xml').getroot()
+
+
+def setup_arguments(package):
+    """Keyword arguments of ``setup()``, as far as they are literals."""
+    call = next(node for node in ast.walk(ast.parse((package / 'setup.py').read_text()))
+                if isinstance(node, ast.Call) and ast.unparse(node.func) == 'setup')
+    found = {}
+    for keyword in call.keywords:
+        try:
+            found[keyword.arg] = ast.literal_eval(keyword.value)
+        except ValueError:
+            pass
+    return found
+
+
+def imported(package):
+    """Top-level modules that a package imports, the standard library's and its own left out."""
+    names = set()
+    for path in [*(package / package.name).rglob('*.py'), *(package / 'launch').glob('*.py')]:
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                names |= {alias.name.split('.')[0] for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                names.add(node.module.split('.')[0])
+    return names - sys.stdlib_module_names - FOR_TESTS - {package.name}
+
+
+def is_ros(module):
+    return module in ROS or module.endswith(('_msgs', '_interfaces', '_srvs'))
+
+
+@pytest.fixture(params=PACKAGES, ids=lambda path: path.name)
+def package(request):
+    return request.param
+
+
+def test_package_xml_and_setup_py_say_the_same(package):
+    root, setup = tree(package), setup_arguments(package)
+    assert root.get('format') == '3'
+    assert root.findtext('name') == package.name
+    assert root.findtext('export/build_type') == 'ament_python'
+    assert root.findtext('version') == setup['version']
+    assert root.findtext('license') == setup['license'] == 'Apache-2.0'
+    assert root.findtext('maintainer') == setup['maintainer']
+    assert root.findtext('test_depend') == 'python3-pytest'
+    assert 'pytest' in setup['extras_require']['test'] and 'tests_require' not in setup  # which breaks colcon test
+
+
+def test_ros2_run_finds_the_package_and_its_executable(package):
+    assert (package / 'resource' / package.name).is_file()
+    assert (package / 'README.md').is_file()
+    config = (package / 'setup.cfg').read_text()
+    assert config.count(f'=$base/lib/{package.name}\n') == 2
+    if package.name.endswith('_node'):
+        scripts = setup_arguments(package)['entry_points']['console_scripts']
+        assert f'{package.name} = {package.name}.node:main' in scripts
+
+
+def test_all_that_is_imported_is_depended_upon(package):
+    depends = {depend.text for depend in tree(package).iter('exec_depend')}
+    notes = (package / 'package.xml').read_text()
+    for module in sorted(imported(package)):
+        if module in NAMES or is_ros(module):
+            assert module in depends
+        elif module in ROSDEP:
+            assert ROSDEP[module] in depends
+        else:
+            assert re.search(rf'<!-- From pip[^>]*\b{PIP.get(module, module).replace("_", "-")}\b', notes), module
+
+
+def test_pip_installs_what_is_imported(package):
+    requires = {re.sub(r'[-_.]+', '-', name.lower()) for name in setup_arguments(package).get('install_requires', [])}
+    distributions = {'yaml': 'pyyaml', 'rclpy': 'rclpy', **PIP}
+    for module in imported(package):
+        if module in NAMES:
+            assert module.replace('_', '-') in requires
+        elif not is_ros(module) or module == 'rclpy':
+            assert distributions.get(module, module).replace('_', '-') in requires
+
+
+def test_the_makefile_and_the_tools_know_all_packages():
+    makefile = re.search(r'PACKAGES := (.*?)\n\w', (ROOT / 'Makefile').read_text(), re.DOTALL).group(1)
+    assert set(makefile.replace('\\\n', ' ').split()) == NAMES
+    tools = tomllib.loads((ROOT / 'pyproject.toml').read_text())['tool']
+    tested = {Path(path).parts[2] for path in tools['pytest']['ini_options']['testpaths'] if path != 'tests'}
+    assert tested == {package.name for package in PACKAGES if (package / 'test').is_dir()}
+    assert set(tools['mypy']['packages']) == NAMES - {'panda_tray_description'}
