@@ -66,7 +66,7 @@ class TestInANamespace:
         assert value in (given.integer_value, given.double_value, given.bool_value)
 
     def test_clock_stays_where_everybody_looks_for_it(self, graph):
-        """With use_sim_time the keys' node stamps with the simulation's clock, which has whole hundredths of a second."""
+        """With use_sim_time the keys' node stamps by the simulation's clock, which goes on in steps of 10 ms."""
         clocks, wrenches = graph.listen(contract.CLOCK), graph.listen(HUMAN_WRENCH)
         graph.spin(lambda: len(clocks) > 20 and len(wrenches) > 5, what='/clock and wrenches')
         newest = to_ns(clocks[-1].clock)

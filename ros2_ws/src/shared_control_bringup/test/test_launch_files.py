@@ -3,6 +3,8 @@
 import ast
 import importlib.util
 import re
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -112,6 +114,18 @@ def test_the_readme_lists_the_files_and_their_arguments():
     for path in FILES:
         own = set(declared(ast.parse(path.read_text()))) - {'params_file', 'namespace'}
         assert set(re.findall(r'`(\w+)`', rows[path.name])) == own
+
+
+def test_launch_files_need_no_packages_from_pip():
+    """``ros2 launch`` runs on the system's Python, which has none; nodes run on that of their scripts."""
+    lines = {ast.unparse(item) for path in [*FILES, PACKAGE / 'shared_control_bringup' / 'launching.py']
+             for item in ast.parse(path.read_text()).body if isinstance(item, ast.ImportFrom) and not item.level
+             and not item.module.startswith(('launch', 'shared_control_bringup.launching'))}
+    heavy = ('torch', 'gymnasium', 'pinocchio', 'pybullet', 'rosbags', 'mcap', 'stable_baselines3')
+    script = '\n'.join([*lines, 'import shared_control_bringup.parameters, shared_control_bringup.node_process, sys',
+                        f'print([name for name in {heavy} if name in sys.modules])'])
+    ran = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout.splitlines()[-1] == '[]'
 
 
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.name)
