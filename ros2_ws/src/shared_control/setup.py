@@ -24,6 +24,7 @@ setup(
     entry_points={
         'console_scripts': ['shared-control = shared_control.cli:main'],
         'shared_control.commands': [
+            'validate = shared_control.validation.command:add_command',
             'export = shared_control.export.command:add_command',
         ],
     },

@@ -33,7 +33,7 @@ def cosine_reference(model: PandaModel, frequency: float, seconds: float, dt: fl
     """The reference for ``seconds`` from the reference posture on: qd_ref = J^+ V_e (23), q_ref its integral.
 
     J is taken at q_ref, so that the reference does not depend on how well it is followed; V_e (26) holds
-    :func:`cosine_velocity` along x, and zero for the other five, at the middle of each tick (the midpoint rule).
+    :func:`cosine_velocity` along x, taken in the middle of each tick, and zero for the other five.
     """
     ticks = round(seconds / dt)
     q, qd = np.empty((ticks, len(Q_REFERENCE))), np.empty((ticks, len(Q_REFERENCE)))
