@@ -43,7 +43,7 @@ def graph(start_node, observer):
     """The same on the unpaced graph."""
     states = observer.listen(contract.JOINT_STATES)
     start_node('panda_sim_node', paced=False)
-    start_node('torque_ctrl_node', wait_for=['agent'])
+    start_node('torque_ctrl_node', enabled=True, wait_for=['agent'])
     background = Background(observer.node)
     plant = GraphPlant(observer.node, background, observer.take_all)
     plant.wait_until_up()

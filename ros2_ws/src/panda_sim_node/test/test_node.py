@@ -26,7 +26,7 @@ def pause(observer, paused):
 def states(start_node, observer):
     states = observer.listen(contract.JOINT_STATES, depth=10_000)
     start_node('panda_sim_node', paced=False, seed=7)
-    start_node('torque_ctrl_node')
+    start_node('torque_ctrl_node', enabled=True)
     observer.spin(lambda: len(states) > 500, what='the loop runs')
     return states
 
@@ -129,7 +129,7 @@ def test_free_running_goes_on_without_torques_on_its_brakes(start_node, observer
 def test_free_running_is_controlled(start_node, observer):
     states, commands = observer.listen(contract.JOINT_STATES), observer.listen(contract.EFFORT_COMMANDS)
     start_node('panda_sim_node', mode='free_running')
-    start_node('torque_ctrl_node', prediction_horizon=0.004)
+    start_node('torque_ctrl_node', enabled=True, prediction_horizon=0.004)
     observer.spin(lambda: len(commands) > 1000)
     q = np.array([m.position for m in states])
     assert np.abs(q - q[0]).max() < 0.02

@@ -19,7 +19,7 @@ def output(tmp_path):
 @pytest.fixture
 def graph(start_node):
     """The simulator as a node that can be killed."""
-    start_node('torque_ctrl_node')
+    start_node('torque_ctrl_node', enabled=True)
     return start_node('panda_sim_node', paced=False)
 
 

@@ -11,7 +11,8 @@ from shared_control_ros.stamps import to_ns
 @pytest.fixture(scope='class')
 def graph(start_node, observer):
     for package in ('torque_ctrl_node', 'panda_sim_node', 'robot_view_node'):
-        start_node(package).wait_for_log('ready')
+        parameters = {'enabled': True} if package == 'torque_ctrl_node' else {}
+        start_node(package, **parameters).wait_for_log('ready')
     return observer
 
 

@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 from shared_control.control.computed_torque import ComputedTorqueController
@@ -13,7 +14,8 @@ from shared_control.robot.model import PandaModel
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
-from std_srvs.srv import SetBool
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool, Trigger
 
 MODEL = PandaModel()
 GRAVITY = MODEL.gravity(Q_REFERENCE).copy()
@@ -22,7 +24,7 @@ GRAVITY = MODEL.gravity(Q_REFERENCE).copy()
 class Robot:
     """A robot that stands still at the reference and asks for torques."""
 
-    def __init__(self, observer):
+    def __init__(self, observer, sources_are_heard=True):
         self.observer = observer
         self.commands = observer.listen(contract.EFFORT_COMMANDS)
         self.applied = observer.listen(contract.APPLIED_WRENCH)
@@ -31,8 +33,9 @@ class Robot:
         self.agent = observer.publisher(contract.AGENT_WRENCH)
         self.now_ns = time.time_ns() // 20_000_000 * 20_000_000
         observer.spin(lambda: all(p.get_subscription_count() for p in (self.states, self.human, self.agent)))
-        self._be_heard(self.human)
-        self._be_heard(self.agent)
+        if sources_are_heard:
+            self._be_heard(self.human)
+            self._be_heard(self.agent)
 
     def _be_heard(self, source):
         """Discovery has two sides: send until the controller shows that it listens."""
@@ -45,10 +48,10 @@ class Robot:
             else:
                 raise AssertionError('the controller does not hear its sources')
 
-    def tick_once(self):
+    def tick_once(self, **changes):
         """Publish the next tick; an answer may or may not come."""
         self.now_ns += 1_000_000
-        self.states.publish(self.state())
+        self.states.publish(self.state(**changes))
         self.observer.spin_for(0.05)
 
     def state(self, **changes):
@@ -87,7 +90,7 @@ def expected(m_y):
 
 @pytest.fixture(scope='class')
 def node(start_node):
-    return start_node('torque_ctrl_node')
+    return start_node('torque_ctrl_node', enabled=True)
 
 
 @pytest.fixture(scope='class')
@@ -156,16 +159,6 @@ class TestRunningController:
         robot.states.publish(robot.state())
         robot.observer.spin(lambda: len(robot.commands) == count + 1)
 
-    def test_enable_and_disable(self, robot):
-        response = robot.observer.call(SetBool, contract.ENABLE_SERVICE, SetBool.Request(data=False))
-        assert response.success
-        count = len(robot.commands)
-        robot.tick_once()
-        robot.observer.spin_for(0.2)
-        assert len(robot.commands) == count
-        robot.observer.call(SetBool, contract.ENABLE_SERVICE, SetBool.Request(data=True))
-        robot.tick()
-
     def test_says_once_a_second_how_it_fares(self, robot):
         reports = robot.observer.listen(contract.DIAGNOSTICS)
         deadline = time.monotonic() + 15
@@ -174,6 +167,89 @@ class TestRunningController:
         status = reports[0].status[0]
         assert {'period_p50_ms', 'period_p99_ms', 'overruns'} <= {value.key for value in status.values}
         assert '/human/target_wrench: silent for' in status.message
+
+
+@pytest.fixture(scope='class')
+def disabled(start_node):
+    return start_node('torque_ctrl_node', robot_compensates_gravity=True)
+
+
+@pytest.fixture(scope='class')
+def robot_at_rest(disabled, observer):
+    return Robot(observer, sources_are_heard=False)
+
+
+class TestSafety:
+    """A controller that nobody has enabled, from one state to the next."""
+
+    def ask(self, robot, service, request=None):
+        return robot.observer.call(type_of(request), f'torque_ctrl_node/{service}', request or Trigger.Request())
+
+    def answers(self, robot, ticks=3, **state):
+        """The torques that answer some ticks."""
+        count = len(robot.commands)
+        for _ in range(ticks):
+            robot.tick_once(effort=[0.0] * 7, **state)
+        return [np.array(m.data) for m in robot.commands[count:]]
+
+    def wait_for_silence(self, robot):
+        for _ in range(100):
+            for _ in range(50):
+                robot.now_ns += 1_000_000
+                robot.states.publish(robot.state(effort=[0.0] * 7))
+                time.sleep(0.001)
+            robot.observer.spin_for(0.05)
+            if not self.answers(robot):
+                return
+        pytest.fail('it goes on sending torques')
+
+    def enable(self, robot, **state):
+        self.answers(robot, **state)
+        return self.ask(robot, 'enable', SetBool.Request(data=True))
+
+    def test_starts_disabled_and_says_how_to_go_on(self, disabled, robot_at_rest):
+        disabled.wait_for_log('disabled: /torque_ctrl_node/enable to go on')
+        assert self.answers(robot_at_rest) == []
+
+    def test_is_not_enabled_far_from_the_reference(self, robot_at_rest):
+        far = Q_REFERENCE + [0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0]
+        response = self.enable(robot_at_rest, position=far.tolist())
+        assert not response.success and 'panda_joint4 is 0.50 rad off' in response.message
+        assert self.answers(robot_at_rest) == []
+
+    def test_enabled_it_answers_and_disabled_it_brings_the_arm_to_rest_and_falls_silent(self, robot_at_rest):
+        assert self.enable(robot_at_rest).success
+        robot_at_rest.tick(effort=[0.0] * 7)
+        assert self.ask(robot_at_rest, 'enable', SetBool.Request(data=False)).success
+        torque = robot_at_rest.tick(effort=[0.0] * 7, velocity=[0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
+        assert torque[1] == -1.0, 'against the motion, as fast as the rate of the torque allows'
+        np.testing.assert_allclose(robot_at_rest.tick(effort=[0.0] * 7), np.zeros(7), atol=1e-9)
+        self.wait_for_silence(robot_at_rest)
+
+    @pytest.mark.parametrize('how', ['service', 'topic'])
+    def test_the_emergency_stop_wins_until_it_is_reset(self, robot_at_rest, how):
+        assert self.enable(robot_at_rest).success
+        reports = robot_at_rest.observer.listen(contract.DIAGNOSTICS)
+        if how == 'service':
+            assert self.ask(robot_at_rest, 'emergency_stop').success
+        else:
+            publisher = robot_at_rest.observer.publisher(contract.EMERGENCY_STOP)
+            robot_at_rest.observer.spin(lambda: publisher.get_subscription_count())
+            publisher.publish(Bool(data=True))
+            publisher.publish(Bool(data=False))
+        robot_at_rest.observer.spin(lambda: self.answers(robot_at_rest) is not None and any(
+            r.status[0].level == DiagnosticStatus.ERROR and 'emergency stop' in r.status[0].message for r in reports))
+        refused = self.enable(robot_at_rest)
+        assert not refused.success and 'reset_emergency_stop first' in refused.message
+        assert self.ask(robot_at_rest, 'reset_emergency_stop').success
+        self.wait_for_silence(robot_at_rest)
+        assert self.enable(robot_at_rest).success
+        robot_at_rest.tick(effort=[0.0] * 7)
+        assert self.ask(robot_at_rest, 'enable', SetBool.Request(data=False)).success
+
+
+def type_of(request):
+    return Trigger if request is None else SetBool
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

@@ -7,6 +7,7 @@ Sums the moments of human and agent, turns them into a wrench at the tray, and p
 import gc
 
 import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from shared_control.control.computed_torque import ComputedTorqueController
@@ -22,9 +23,9 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
 from std_msgs.msg import Float64MultiArray
-from std_srvs.srv import SetBool
 
 from .joint_states import JointStateReader
+from .safety import Safety
 from .wrench_input import WrenchInput
 
 TICKS_PER_POLL = 10
@@ -50,7 +51,8 @@ class TorqueCtrlNode:
         wait_for = declare(
             node, 'wait_for', ['none'], 'Sources to wait for at every policy tick, for results that do not depend '
             'on timing.', choices=('none', 'human', 'agent'))
-        self._enabled = declare(node, 'enabled', True, 'Send torques from the start.')
+        enabled = declare(
+            node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls ~/enable.')
 
         self._controller = ComputedTorqueController(
             PandaModel(), GAINS[gains], CONTROL_PERIOD, horizon, robot_compensates_gravity=compensates)
@@ -70,7 +72,10 @@ class TorqueCtrlNode:
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
         self._applied_publisher = node.create_publisher(
             contract.APPLIED_WRENCH.msg_type, contract.APPLIED_WRENCH.name, contract.APPLIED_WRENCH.qos)
-        node.create_service(SetBool, '~/enable', self._on_enable)
+        self._safety = Safety(node, enabled, self._report)
+
+        if not enabled:
+            node.get_logger().info(self._safety.problem)
 
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
         self._background = Background(node)
@@ -86,15 +91,21 @@ class TorqueCtrlNode:
         while not stop.requested:
             message = self._joint_states.wait(0.1)
             if message is None:
-                self._background.poll()
+                self._serve()
                 self._diagnostics.skip()
-            elif self._enabled and not self._is_leftover(to_ns(message.header.stamp)):
+            elif not self._safety.enabled:
+                self._stand_by(message)
+            elif not self._is_leftover(to_ns(message.header.stamp)):
                 self._answer(message, stop)
             self._ticks += 1
             if self._ticks % TICKS_PER_POLL == 0:
-                self._background.poll()
+                self._serve()
             if self._diagnostics.due():
                 self._report()
+
+    def _serve(self) -> None:
+        self._background.poll()
+        self._safety.hear()
 
     def _is_leftover(self, stamp_ns: int) -> bool:
         """Whether this tick was answered and is only its first repetition (docs/architecture.md, "The tick")."""
@@ -106,11 +117,12 @@ class TorqueCtrlNode:
         try:
             q, qd, effort = self._reader.read(message)
         except ValueError as error:
-            self.node.get_logger().error(
-                f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
+            self._refuse(error)
             return
         if self._awaited and now_ns % self._policy_period_ns == 0:
             self._wait_for_sources(now_ns, stop)
+            if not self._safety.enabled:
+                return
         self._human.update(now_ns)
         self._agent.update(now_ns)
         m_y = sum_moments(self._agent.moment(now_ns), self._human.moment(now_ns), self._moment_limit)
@@ -124,18 +136,29 @@ class TorqueCtrlNode:
             applied.wrench.torque.y = m_y
             self._applied_publisher.publish(applied)
 
+    def _stand_by(self, message: contract.JointState) -> None:
+        """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""
+        try:
+            q, qd, effort = self._reader.read(message)
+        except ValueError as error:
+            self._refuse(error)
+            return
+        self._safety.see(q)
+        if self._safety.stopping_ticks and not self._is_leftover(to_ns(message.header.stamp)):
+            self._safety.stopping_ticks -= 1
+            self._torque[:] = self._controller.damping_torque(q, qd, effort)
+            self._command_publisher.publish(self._command)
+            self._answered_ns = to_ns(message.header.stamp)
+
+    def _refuse(self, error: ValueError) -> None:
+        self.node.get_logger().error(
+            f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
+
     def _wait_for_sources(self, now_ns: int, stop: Stop) -> None:
         for source in self._awaited:
-            while not source.wait_for_stamp(now_ns, 1.0) and not stop.requested:
+            while not source.wait_for_stamp(now_ns, 1.0) and self._safety.enabled and not stop.requested:
                 self.node.get_logger().warning(f'waiting for {source.topic_name} (parameter wait_for)')
-                self._background.poll()
-
-    def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        self._enabled = request.data
-        response.success = True
-        response.message = 'enabled' if self._enabled else 'disabled: no torques are sent'
-        self.node.get_logger().info(response.message)
-        return response
+                self._serve()
 
     def _report(self) -> None:
         now_ns = self._answered_ns
@@ -143,9 +166,11 @@ class TorqueCtrlNode:
         for source in (self._human, self._agent):
             if problem := source.problem(now_ns):
                 problems[source.topic_name] = problem
-        if not self._enabled:
-            problems[self._command_publisher.topic_name] = 'disabled'
-        self._diagnostics.publish(problems, m_y=self._applied.wrench.torque.y)
+        if problem := self._safety.problem:
+            problems[self._command_publisher.topic_name] = problem
+        self._diagnostics.publish(
+            problems, level=DiagnosticStatus.ERROR if self._safety.is_stopped else None, enabled=self._safety.enabled,
+            emergency_stop=self._safety.is_stopped, m_y=self._applied.wrench.torque.y)
 
     def close(self) -> None:
         """Nothing to undo: the robot stops applying what it no longer receives."""

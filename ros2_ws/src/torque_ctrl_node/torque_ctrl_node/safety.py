@@ -1,0 +1,129 @@
+"""Whether torques may be sent: enable, disable, and the emergency stop that wins over both."""
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+from rclpy.node import Node
+from shared_control.envs.plant import CONTROL_PERIOD
+from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+from std_srvs.srv import SetBool, Trigger
+
+STOPPING_TICKS = round(0.5 / CONTROL_PERIOD)
+"""How long the arm is brought to rest by damping before the torques end."""
+START_WITHIN = 0.2
+"""rad: nearer than this to the reference, a joint may be enabled; from further off the arm would leap."""
+JOINTS_SECONDS = 1.0
+"""Joint positions that are older than this do not count, s."""
+
+
+class Safety:
+    """The controller's state, and the services and the topic that change it.
+
+    Disabled, enabled, or stopped by the emergency stop, which no request but its own reset ends, and after which the
+    controller is disabled. Whenever the torques are to end, the arm is first brought to rest.
+
+    Args:
+        node: the controller's node; serves ``~/enable``, ``~/emergency_stop``, ``~/reset_emergency_stop`` and hears
+            ``emergency_stop``.
+        enabled: from the start.
+        on_change: called after each change.
+    """
+
+    def __init__(self, node: Node, enabled: bool, on_change: Callable[[], None]):
+        self._node = node
+        self._on_change = on_change
+        self.enabled = enabled
+        """Whether torques are computed and sent."""
+        self.stopping_ticks = 0
+        """For so many more ticks the arm is to be brought to rest."""
+        self._q = Q_REFERENCE
+        self._q_seen = -math.inf
+        self.is_stopped = False
+        """Whether the emergency stop is on."""
+        name = node.get_fully_qualified_name()
+        self._enable_name, self._reset_name = f'{name}/enable', f'{name}/reset_emergency_stop'
+        self._stop_messages = Polled(node, contract.EMERGENCY_STOP, depth=contract.EMERGENCY_STOP.qos.depth)
+        node.create_service(SetBool, '~/enable', self._on_enable)
+        node.create_service(Trigger, '~/emergency_stop', self._on_stop_request)
+        node.create_service(Trigger, '~/reset_emergency_stop', self._on_reset)
+
+    @property
+    def problem(self) -> str:
+        """Why no torques are sent; empty when they are."""
+        if self.is_stopped:
+            return f'emergency stop: {self._reset_name}, then {self._enable_name}, to go on'
+        return '' if self.enabled else f'disabled: {self._enable_name} to go on'
+
+    def see(self, q: np.ndarray) -> None:
+        """Joint positions while disabled, (7,), rad: they decide whether the controller may be enabled."""
+        self._q = q
+        self._q_seen = time.monotonic()
+
+    def hear(self) -> None:
+        """Look whether somebody has published an emergency stop; false means nothing: only the service ends one."""
+        while (message := self._stop_messages.take()) is not None:
+            if message.data and not self.is_stopped:
+                self._emergency_stop()
+
+    def _end_torques(self) -> None:
+        if self.enabled:
+            self.enabled = False
+            self.stopping_ticks = STOPPING_TICKS
+            self._q_seen = -math.inf
+
+    def _obstacle(self) -> str:
+        """What speaks against enabling now; empty when nothing does."""
+        if self.is_stopped:
+            return f'the emergency stop is on: call {self._reset_name} first'
+        if time.monotonic() - self._q_seen > JOINTS_SECONDS:
+            return f'no usable joint states on {self._node.resolve_topic_name(contract.JOINT_STATES.name)}'
+        off = np.abs(self._q - Q_REFERENCE)
+        if off.max() > START_WITHIN:
+            joint = int(off.argmax())
+            return (f'{JOINT_NAMES[joint]} is {off[joint]:.2f} rad off the reference, at most {START_WITHIN} are '
+                    'allowed: bring the arm there first')
+        return ''
+
+    def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        if request.data and not self.enabled:
+            if obstacle := self._obstacle():
+                response.success = False
+                response.message = f'not enabled: {obstacle}'
+                self._node.get_logger().error(response.message)
+                return response
+            self.enabled = True
+            self.stopping_ticks = 0
+        elif not request.data:
+            self._end_torques()
+        response.success = True
+        response.message = (
+            'enabled' if self.enabled else 'disabled: the arm is brought to rest, then no torques are sent')
+        self._changed(response.message)
+        return response
+
+    def _on_stop_request(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._emergency_stop()
+        response.success = True
+        response.message = self.problem
+        return response
+
+    def _emergency_stop(self) -> None:
+        self.is_stopped = True
+        self._end_torques()
+        self._changed(self.problem)
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success = self.is_stopped
+        response.message = 'the emergency stop is over; disabled' if self.is_stopped else 'there is no emergency stop'
+        self.is_stopped = False
+        self._changed(response.message)
+        return response
+
+    def _changed(self, message: str) -> None:
+        self._node.get_logger().warning(message)
+        self._on_change()
