@@ -15,7 +15,7 @@ setup(
         'panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
         'rosbags', 'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
     ],
-    extras_require={'test': ['pytest']},
+    extras_require={'test': ['pytest'], 'ray': ['ray']},
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',
@@ -25,6 +25,8 @@ setup(
         'console_scripts': ['shared-control = shared_control.cli:main'],
         'shared_control.commands': [
             'validate = shared_control.validation.command:add_command',
+            'report = shared_control.report.command:add_command',
+            'study = shared_control.study.command:add_command',
             'export = shared_control.export.command:add_command',
         ],
     },

@@ -1,9 +1,11 @@
 """Processes of nodes: their environment, and that they do not outlive the one that started them."""
 
-import ctypes
 import os
-import signal
 from pathlib import Path
+
+from shared_control.processes import leave_with_the_parent
+
+__all__ = ['leave_with_the_parent', 'node_environment']
 
 DDS_PROFILE = Path(__file__).parent / 'config' / 'this_machine.xml'
 _DDS_VARIABLES = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTDDS_DEFAULT_PROFILES_FILE')
@@ -20,12 +22,3 @@ def node_environment() -> dict[str, str]:
         environment['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'SYSTEM_DEFAULT'  # as the profile says
         environment['FASTDDS_DEFAULT_PROFILES_FILE'] = str(DDS_PROFILE)
     return environment
-
-
-def leave_with_the_parent() -> None:
-    """Have this process asked to leave (SIGTERM) when its parent dies, even by SIGKILL.
-
-    For ``subprocess.Popen(preexec_fn=...)``; Linux only.
-    """
-    set_parent_death_signal = 1
-    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)

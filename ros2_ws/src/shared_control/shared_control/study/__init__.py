@@ -1,0 +1,1 @@
+"""Studies: participants x conditions, simulated or real, from one YAML file."""

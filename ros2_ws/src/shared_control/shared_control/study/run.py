@@ -1,0 +1,85 @@
+"""Doing what is left of a study's runs."""
+
+import json
+import sys
+from collections.abc import Iterator, Sequence
+
+from tqdm import tqdm
+
+from .estimate import TimeLeft, in_words
+from .folder import StudyError, StudyFolder
+from .plan import Job, Plan
+from .pool import Outcome, on_ray, on_this_machine
+from .progress import Progress
+from .result import RESULT, is_done
+
+DISK = ('No space left', 'Disk quota', 'Read-only file system')
+"""Errors after which no other run can succeed either."""
+
+
+def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = None) -> None:
+    """Do the runs that can be done and are not; a bar shows how many are, and the time left.
+
+    Args:
+        workers: processes on this machine.
+        ray: address of a Ray cluster to use instead.
+
+    Raises:
+        StudyError: runs failed; the message says which and why. The others are done.
+    """
+    jobs = {job.name: job for job in plan.jobs if _possible(folder, plan, job)}
+    left = {name: job for name, job in jobs.items() if not is_done(folder.run(job))}
+    time_left = TimeLeft()
+    for job in jobs.values():
+        if job.name not in left:
+            time_left.learn(job, _seconds(folder, job))
+    failed: list[Outcome] = []
+    with tqdm(total=len(jobs), initial=len(jobs) - len(left), unit='run', disable=not sys.stderr.isatty(),
+              bar_format='{bar} {n_fmt} of {total_fmt} runs, {elapsed}{postfix}') as bar:
+        for outcomes in _outcomes(folder, list(left), workers, ray):
+            for outcome in outcomes:
+                job = left.pop(outcome.name)
+                if outcome.error:
+                    failed.append(outcome)
+                else:
+                    time_left.learn(job, _seconds(folder, job))
+                bar.update()
+                _tell(bar, f'{outcome.name}: {outcome.error or _summary(folder, job)}')
+            bar.set_postfix_str(f'about {in_words(time_left.estimate(left.values(), workers))} left')
+            if failed and any(text in (failed[-1].error or '') for text in DISK):
+                break
+    if failed:
+        reasons = '\n'.join(f'  {outcome.name}: {outcome.error}' for outcome in failed)
+        raise StudyError(f'{len(failed)} of {len(jobs)} runs failed:\n{reasons}\nWhat is finished is kept in '
+                         f'{folder.path}; start the same command again to do the rest.')
+
+
+def _outcomes(folder: StudyFolder, names: Sequence[str], workers: int, ray: str | None) -> Iterator[list[Outcome]]:
+    path = folder.path.absolute()
+    return on_this_machine(path, names, workers) if ray is None else on_ray(path, names, ray)
+
+
+def _possible(folder: StudyFolder, plan: Plan, job: Job) -> bool:
+    """Whether a run waits for nobody."""
+    return plan.people is None or not job.condition.taught or (
+        job.condition.name in Progress.of(folder.person(job.participant)).taught)
+
+
+def _seconds(folder: StudyFolder, job: Job) -> float:
+    return float(_content(folder, job)['seconds'])
+
+
+def _summary(folder: StudyFolder, job: Job) -> str:
+    skilled = _content(folder, job)['skilled']
+    return f'skilled after {skilled} episodes' if skilled else 'not skilled'
+
+
+def _content(folder: StudyFolder, job: Job) -> dict:
+    return json.loads((folder.run(job) / RESULT).read_text())
+
+
+def _tell(bar: tqdm, text: str) -> None:
+    if bar.disable:
+        print(text, flush=True)
+    else:
+        bar.write(text, file=sys.stderr)
