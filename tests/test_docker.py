@@ -17,7 +17,8 @@ SOURCES = ROOT / 'ros2_ws' / 'src'
 DOCKERFILES = sorted((ROOT / 'docker').glob('*.Dockerfile'))
 HOME = '/shared-control/'
 COMPOSE = yaml.safe_load((ROOT / 'docker' / 'compose.yaml').read_text())
-SCRIPTS = {name for setup in SOURCES.glob('*/setup.py') for name in re.findall(r"'(\S+) = \S+:main'", setup.read_text())}
+SCRIPTS = {name for setup in SOURCES.glob('*/setup.py')
+           for name in re.findall(r"'(\S+) = \S+:main'", setup.read_text())}
 
 
 def instructions(dockerfile):
