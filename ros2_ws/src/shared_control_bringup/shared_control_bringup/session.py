@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import re
 import signal
 import sys
 import time
@@ -19,7 +18,7 @@ from shared_control_ros.host_and_port import host_and_port
 
 from . import parameters as ros_parameters
 from .node_process import NodeProcess
-from .progress import EpisodePrinter
+from .progress import AddressPrinter, EpisodePrinter
 from .supervisor import SessionError, StoppedByNode, Supervisor
 
 POLL_SECONDS = 0.1
@@ -147,13 +146,14 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
 
     supervisor = Supervisor(nodes, leader='ppo_agent_node', stopper='teach_page_node', say=say)
     episodes = EpisodePrinter(folder.episodes, say)
+    page = AddressPrinter(folder.logs / 'teach_page_node.log', say)
     previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
     error: SessionError | None = None
     try:
         supervisor.start()
-        _tell_address(folder.logs / 'teach_page_node.log', settings)
         while supervisor.poll():
             episodes.poll()
+            page.poll()
             time.sleep(POLL_SECONDS)
         end = End.DONE
     except (KeyboardInterrupt, StoppedByNode):
@@ -175,13 +175,6 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
 
 def _interrupt(*_: object) -> None:
     raise KeyboardInterrupt
-
-
-def _tell_address(log: Path, settings: dict[str, Any]) -> None:
-    """Where the page is, as its node has said."""
-    if settings['tutor'] == 'page':
-        *_, address = re.findall(r'open (http\S+)', log.read_text()) or ['the address that its log tells: ' + str(log)]
-        print(f'\n    Teach here: {address}\n', flush=True)
 
 
 def _has_terminal() -> bool:

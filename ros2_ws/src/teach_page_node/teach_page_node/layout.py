@@ -147,7 +147,7 @@ _REPLAY_HELP = (
     'The keys that the teacher pressed show as the arrow of <i>you</i>.')
 
 _CLOSE_VIEW = """
-<svg viewBox="-240 -62 480 160" data-part="close-view" role="img" aria-label="The tray from the front">
+<svg viewBox="-240 -60 480 168" data-part="close-view" role="img" aria-label="The tray from the front">
   <defs><marker id="tip" viewBox="0 0 10 10" refX="6" refY="5" markerWidth="3.2" markerHeight="3.2" orient="auto">
     <path d="M0 0L10 5L0 10z" fill="context-stroke"/></marker></defs>
   <line x1="-238" x2="238" y1="0" y2="0" class="level"/>

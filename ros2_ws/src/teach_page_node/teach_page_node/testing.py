@@ -1,0 +1,105 @@
+"""The page in a real browser, for tests and measurements: headless Chromium, drawing by software."""
+
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from typing import Any
+
+from selenium.webdriver import ActionChains, Chrome, ChromeOptions
+from selenium.webdriver.chrome.service import Service
+
+_BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
+_OPTIONS = (
+    '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+    '--disable-component-update', '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader',
+    '--enable-unsafe-swiftshader', '--hide-scrollbars')
+_BALL_ON_SCREEN = """
+    const view = getElement(teachPage.scene);
+    const ball = [...view.objects.values()].find(({mesh}) => mesh?.name === 'ball').mesh;
+    return (ball.getWorldPosition(ball.position.clone()).project(view.camera).x + 1) / 2 * view.$el.clientWidth"""
+
+
+class Browser:
+    """Chromium with a profile of its own.
+
+    Args:
+        width, height: of its window, pixels.
+
+    Raises:
+        FileNotFoundError: there is no Chromium, or no chromedriver.
+    """
+
+    def __init__(self, width: int = 1000, height: int = 700):
+        browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
+        driver = shutil.which('chromedriver')
+        if browser is None or driver is None:
+            raise FileNotFoundError('no Chromium or no chromedriver: run tools/install_browser.sh as root')
+        self._profile = tempfile.TemporaryDirectory()
+        options = ChromeOptions()
+        options.binary_location = browser
+        for option in (*_OPTIONS, f'--user-data-dir={self._profile.name}', f'--window-size={width},{height}'):
+            options.add_argument(option)
+        options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
+        self.driver = Chrome(options=options, service=Service(driver))
+
+    def open(self, address: str) -> None:
+        """Open the page and wait until it shows something."""
+        self.driver.get(address)
+        self.wait(lambda: self.script('return window.teachPage?.picture?.q'), 'a picture')
+
+    def open_tab(self, address: str) -> str:
+        """Open the page in a second tab, which is then in front; its handle."""
+        self.driver.switch_to.new_window('tab')
+        self.open(address)
+        return self.driver.current_window_handle
+
+    def script(self, code: str) -> Any:
+        """What a piece of JavaScript returns."""
+        return self.driver.execute_script(code)
+
+    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 30.0) -> Any:
+        """Wait until ``condition()`` is true, and give its value."""
+        deadline = time.monotonic() + timeout
+        while not (value := condition()):
+            if time.monotonic() > deadline:
+                raise AssertionError(f'waited {timeout} s in vain for {what}; the page says {self.shown()!r}')
+            time.sleep(0.03)
+        return value
+
+    def part(self, name: str) -> Any:
+        """An element of the page."""
+        return self.driver.find_element('css selector', f'[data-part="{name}"]')
+
+    def text(self, name: str) -> str:
+        """What an element of the page says."""
+        return self.part(name).text
+
+    def shown(self) -> str:
+        """What the page says in words."""
+        return self.driver.find_element('css selector', 'main').text
+
+    def keys(self) -> ActionChains:
+        """Keys and mouse."""
+        return ActionChains(self.driver)
+
+    def type(self, key: str) -> None:
+        """Press a key and let it go."""
+        self.keys().send_keys(key).perform()
+
+    def ball_on_screen(self) -> float:
+        """Where the ball of the scene is, pixels from the scene's left side."""
+        return self.script(_BALL_ON_SCREEN)
+
+    def chart(self, name: str) -> list[list[Any]]:
+        """The data of a chart's series."""
+        return self.script(f'return getElement(teachPage.{name}).chart.getOption().series.map((s) => s.data)')
+
+    def complaints(self) -> list[str]:
+        """Errors that the page has logged."""
+        return [entry['message'] for entry in self.driver.get_log('browser') if entry['level'] == 'SEVERE']
+
+    def close(self) -> None:
+        """End the browser."""
+        self.driver.quit()
+        self._profile.cleanup()

@@ -1,0 +1,174 @@
+"""The teaching page in a real browser, with a whole session on the live graph behind it."""
+
+import re
+import signal
+import subprocess
+import sys
+
+import pytest
+from selenium.webdriver.common.keys import Keys
+from shared_control_ros import contract
+from shared_control_ros.processes import leave_with_the_parent
+from teach_page_node.testing import Browser
+
+ROLLED = 60
+"""Pixels that no ball at rest moves."""
+TRIANGLES = 'return getElement(teachPage.scene).renderer.info.render.triangles'
+
+
+@pytest.fixture(scope='class')
+def session(domain_id, tmp_path_factory):
+    """``shared-control session --tutor page``, practising; its process and the page's address."""
+    folder = tmp_path_factory.mktemp('session') / 'session'
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'shared_control', 'session', '--tutor', 'page', '--page', '127.0.0.1:0',
+         '--test-episodes', '0', '--output', str(folder)],
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        preexec_fn=leave_with_the_parent)
+    said = ''
+    while not (found := re.search(r'Teach here: (http://127\S+)', said)):
+        line = process.stdout.readline()
+        assert line, f'the session ended: {said}'
+        said += line
+    yield process, found[1]
+    if process.poll() is None:
+        process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=60)
+
+
+@pytest.fixture(scope='class')
+def browser(session):
+    browser = Browser()
+    yield browser
+    browser.close()
+
+
+@pytest.fixture(scope='class')
+def human(observer):
+    """``human(m_y)``: wait until M_yh is that."""
+    wrenches = observer.listen(contract.HUMAN_WRENCH)
+
+    def wait_for(m_y):
+        observer.spin(lambda: wrenches.clear() or observer.spin_for(0.03) or (
+            wrenches and wrenches[-1].wrench.torque.y == m_y), what=f'M_yh = {m_y}')
+
+    return wait_for
+
+
+class TestASessionOnThePage:
+    """In this order: practice, teaching, stop."""
+
+    def test_it_opens_in_practice(self, browser, session):
+        browser.open(session[1])
+        browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
+        assert browser.text('role') == 'you teach'
+        browser.wait(lambda: browser.script(TRIANGLES) > 5000, 'the meshes')
+        assert not browser.part('focus').is_displayed()
+
+    def test_keys_move_tray_and_ball_the_right_way(self, browser, human):
+        for key, name, m_y, sign in ((Keys.ARROW_RIGHT, 'right', -5.0, 1), (Keys.ARROW_LEFT, 'left', 5.0, -1)):
+            browser.type(Keys.SPACE)
+            human(0.0)
+            scene, close = browser.ball_on_screen(), self.ball_in_close_view(browser)
+            browser.keys().key_down(key).perform()
+            human(m_y)
+            assert 'down' in browser.driver.find_element('css selector', f'[data-key={name}]').get_attribute('class')
+            browser.keys().key_up(key).perform()
+            browser.wait(lambda m_y=m_y: browser.text('human-moment') == f'{m_y:+.1f}'.replace('-', '−'), 'the number')
+            browser.wait(lambda m_y=m_y: any(m_y == point[1] for point in browser.chart('moments')[0]), 'the chart')
+            browser.wait(lambda scene=scene, sign=sign: sign * (browser.ball_on_screen() - scene) > ROLLED, 'the scene')
+            browser.wait(lambda close=close, sign=sign: sign * (self.ball_in_close_view(browser) - close) > ROLLED,
+                         'the close view')
+
+    @staticmethod
+    def ball_in_close_view(browser):
+        return browser.script(
+            'const r = document.querySelector("[data-part=close-ball]").getBoundingClientRect(); return r.x + r.width / 2')
+
+    def test_keys_can_be_clicked(self, browser, human):
+        browser.type(Keys.SPACE)
+        human(0.0)
+        browser.keys().click(browser.driver.find_element('css selector', '[data-key=left]')).perform()
+        human(5.0)
+        browser.keys().click(browser.driver.find_element('css selector', '[data-key=space]')).perform()
+        human(0.0)
+
+    def test_the_chart_of_moments_moves(self, browser):
+        before = browser.chart('moments')
+        browser.wait(lambda: browser.chart('moments') != before, 'new data')
+
+    def test_a_window_without_focus_lets_go_and_says_so(self, browser, human):
+        browser.type('a')
+        human(5.0)
+        first = browser.driver.current_window_handle
+        browser.driver.switch_to.new_window('tab')
+        human(0.0)
+        browser.driver.switch_to.window(first)
+        browser.script('window.dispatchEvent(new Event("blur"))')
+        assert browser.part('focus').is_displayed()
+        browser.keys().move_to_element(browser.part('focus')).click().perform()
+        browser.script('window.dispatchEvent(new Event("focus"))')
+        assert not browser.part('focus').is_displayed()
+
+    def test_a_second_page_can_only_watch(self, browser, session, human):
+        first = browser.driver.current_window_handle
+        second = browser.open_tab(session[1])
+        browser.wait(lambda: 'another page teaches' in browser.text('role'), 'its role')
+        assert not browser.part('start').is_displayed()
+        browser.type(Keys.ARROW_LEFT)
+        refused = browser.driver.execute_async_script("""
+            const socket = new WebSocket(`ws://${location.host}/live`), done = arguments[0];
+            socket.onopen = () => {
+              for (const keys of [[1, 0, 0], [0, 0, 0]]) socket.send(JSON.stringify({keys}));
+              socket.send(JSON.stringify({do: "stop"}));
+              setTimeout(() => { done(true); socket.close(); }, 300);
+            }""")
+        assert refused
+        human(0.0)
+        browser.driver.switch_to.window(first)
+        browser.type(Keys.ARROW_LEFT)
+        human(5.0)
+        browser.driver.close()  # the teacher goes, without a word
+        human(0.0)
+        browser.driver.switch_to.window(second)
+        browser.wait(lambda: browser.text('role') == 'nobody teaches', 'the free seat')
+        browser.part('take-seat').click()
+        browser.wait(lambda: browser.text('role') == 'you teach', 'the seat')
+
+    def test_reload_works(self, browser, human):
+        browser.type(Keys.ARROW_RIGHT)
+        human(-5.0)
+        browser.driver.refresh()
+        human(0.0)
+        browser.wait(lambda: browser.text('role') == 'you teach', 'the seat')
+        browser.type(Keys.ARROW_RIGHT)
+        human(-5.0)
+
+    def test_teaching_starts_over_and_pauses(self, browser, observer):
+        times = observer.listen(contract.TIME_LEFT)
+        browser.part('start').click()
+        browser.wait(lambda: browser.text('phase') == 'Teach · episode 1', 'teaching')
+        observer.spin(lambda: times and times[-1].data < 14.0)
+        browser.part('repeat').click()
+        observer.spin(lambda: times[-1].data > 14.5, what='the episode to start over')
+        browser.part('pause').click()
+        browser.wait(lambda: browser.text('doing') == 'Paused.', 'the pause')
+        browser.part('pause').click()
+        browser.wait(lambda: browser.text('doing') != 'Paused.', 'going on')
+
+    def test_an_episode_ends_in_the_charts(self, browser):
+        assert browser.chart('returns') == [[]]
+        for _ in range(2):
+            browser.type(Keys.ARROW_RIGHT)  # the ball falls, soon: nobody has to wait for 15 s
+        browser.wait(lambda: len(browser.chart('returns')[0]) == 1, 'the return', timeout=60)
+        assert 0 <= browser.chart('shares')[0][0] <= 100
+
+    def test_nothing_went_wrong_in_the_browser(self, browser):
+        assert browser.complaints() == []
+
+    def test_stop_ends_the_session_and_keeps_it(self, browser, session):
+        browser.part('stop').click()
+        browser.driver.switch_to.alert.accept()
+        said, _ = session[0].communicate(timeout=60)
+        assert session[0].returncode == 130
+        assert 'Stopped before the end' in said and 'Traceback' not in said
