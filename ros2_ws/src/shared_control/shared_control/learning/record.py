@@ -76,7 +76,9 @@ class EpisodeRecord:
             'episode': self.episode, 'phase': self.phase, 'steps': self.steps,
             'seconds': round(self.steps * POLICY_PERIOD, 3), 'return': self.episode_return, **self.reward_terms,
             'fallen': int(self.fallen), 'mean_abs_m_y_human': float(np.abs(self._m_y_human).mean()),
-            'mean_abs_m_y_agent': float(np.abs(self._m_y_agent).mean()), 'human_share': self.human_share,
+            'mean_abs_m_y_agent': float(np.abs(self._m_y_agent).mean()),
+            'std_m_y_human': float(np.std(self._m_y_human)), 'std_m_y_agent': float(np.std(self._m_y_agent)),
+            'human_share': self.human_share,
             'intervention_rate': self.intervention_rate,
             'settled_position_error': settled(np.array(self.position_error)),
             'settled_velocity': settled(np.array(self.velocity)), 'learn_seconds': self.learn_seconds}
