@@ -97,7 +97,7 @@ def test_a_service_is_a_node_that_exists(name):
 def test_a_service_can_talk_to_the_others(name):
     service = COMPOSE['services'][name]
     assert service['network_mode'] == service['ipc'] == 'host'
-    assert in_image(service['environment']['FASTDDS_DEFAULT_PROFILES_FILE']).is_file()
+    assert in_image(service['environment']['FASTRTPS_DEFAULT_PROFILES_FILE']).is_file()
     for image in ('ros', 'pip'):
         path = service['build']['dockerfile'].replace('${IMAGE:-ros}', image)
         assert (ROOT / 'docker' / service['build']['context'] / path).is_file()

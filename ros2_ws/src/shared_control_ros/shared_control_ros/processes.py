@@ -8,17 +8,17 @@ from shared_control.processes import leave_with_the_parent
 __all__ = ['leave_with_the_parent', 'node_environment']
 
 DDS_PROFILE = Path(__file__).parent / 'config' / 'this_machine.xml'
-_DDS_VARIABLES = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTDDS_DEFAULT_PROFILES_FILE')
+_DDS_VARIABLES = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
 
 
 def node_environment() -> dict[str, str]:
     """The environment for nodes: one thread each, and DDS on this machine only.
 
-    Whoever sets ``ROS_AUTOMATIC_DISCOVERY_RANGE`` or ``FASTDDS_DEFAULT_PROFILES_FILE`` decides about DDS instead:
+    Whoever sets ``ROS_AUTOMATIC_DISCOVERY_RANGE`` or ``FASTRTPS_DEFAULT_PROFILES_FILE`` decides about DDS instead:
     ``ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET`` opens the graph to the network.
     """
     environment = {'OMP_NUM_THREADS': '1', 'PYTHONUNBUFFERED': '1', **os.environ}
     if not any(variable in os.environ for variable in _DDS_VARIABLES):
         environment['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'SYSTEM_DEFAULT'  # as the profile says
-        environment['FASTDDS_DEFAULT_PROFILES_FILE'] = str(DDS_PROFILE)
+        environment['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(DDS_PROFILE)
     return environment

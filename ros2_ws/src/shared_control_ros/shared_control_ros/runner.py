@@ -1,5 +1,6 @@
 """Start and stop of a node, the same for all of them."""
 
+import os
 import signal
 import sys
 from collections.abc import Callable
@@ -11,6 +12,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from .parameters import ParameterError
+from .processes import node_environment
 
 
 class Stop:
@@ -48,6 +50,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
         print((sys.modules[make.__module__].__doc__ or '').strip())
         print('\nParameters: --ros-args -p NAME:=VALUE or --ros-args --params-file FILE; the README lists them.')
         return 0
+    os.environ.update(node_environment())  # a node that was started by hand keeps to this machine, too
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     stop = Stop()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
