@@ -12,8 +12,10 @@ from typing import Any
 
 import graph
 import headless
+import page
 
-MEASUREMENTS: dict[str, Callable[[], dict[str, Any]]] = {'headless': headless.measure, 'graph': graph.measure}
+MEASUREMENTS: dict[str, Callable[[], dict[str, Any]]] = {
+    'headless': headless.measure, 'graph': graph.measure, 'page': page.measure}
 
 
 def main() -> None:

@@ -1,5 +1,6 @@
 """The page in a real browser, for tests and measurements: headless Chromium, drawing by software."""
 
+import os
 import shutil
 import tempfile
 import time
@@ -11,9 +12,9 @@ from selenium.webdriver.chrome.service import Service
 
 _BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 _OPTIONS = (
-    '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
-    '--disable-component-update', '--disable-sync', '--use-gl=angle', '--use-angle=swiftshader',
-    '--enable-unsafe-swiftshader', '--hide-scrollbars')
+    '--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync', '--use-gl=angle',
+    '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--hide-scrollbars')
 _BALL_ON_SCREEN = """
     const view = getElement(teachPage.scene);
     const ball = [...view.objects.values()].find(({mesh}) => mesh?.name === 'ball').mesh;
@@ -25,12 +26,13 @@ class Browser:
 
     Args:
         width, height: of its window, pixels.
+        niceness: of all its processes.
 
     Raises:
         FileNotFoundError: there is no Chromium, or no chromedriver.
     """
 
-    def __init__(self, width: int = 1000, height: int = 700):
+    def __init__(self, width: int = 1000, height: int = 700, niceness: int = 0):
         browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
         driver = shutil.which('chromedriver')
         if browser is None or driver is None:
@@ -41,7 +43,8 @@ class Browser:
         for option in (*_OPTIONS, f'--user-data-dir={self._profile.name}', f'--window-size={width},{height}'):
             options.add_argument(option)
         options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
-        self.driver = Chrome(options=options, service=Service(driver))
+        service = Service(driver, popen_kw={'preexec_fn': lambda: os.nice(niceness)})
+        self.driver = Chrome(options=options, service=service)
 
     def open(self, address: str) -> None:
         """Open the page and wait until it shows something."""

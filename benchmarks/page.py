@@ -1,0 +1,154 @@
+"""The page beside the control loop: from a key in the browser to M_yh, pictures a second, and what it costs the loop.
+
+The nodes run as in a session (the control loop on the last core, the others at niceness 10 on the rest), the agent in
+practice: first without a browser, then with Chromium showing the page. The browser draws by software, in a small
+window, at the niceness of the nodes beside the loop; a computer with a graphics card draws for nothing.
+"""
+
+import json
+import os
+import re
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import graph
+import numpy as np
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
+from selenium.webdriver.common.keys import Keys
+from shared_control_bringup import parameters
+from shared_control_bringup.node_process import NICENESS, NodeProcess
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+from teach_page_node.testing import Browser
+
+NODES = ('torque_ctrl_node', 'panda_sim_node', 'teleop_key_node', 'teach_page_node', 'ppo_agent_node')
+WINDOW = (800, 600)
+PRESSES = 60
+SECONDS = 20.0
+_NOTE_KEYS = """
+    window.pressedAt = []
+    addEventListener('keydown', () => pressedAt.push(performance.timeOrigin + performance.now()), true)"""
+_COUNTS = 'return [teachPage.pictures, getElement(teachPage.scene).renderer.info.render.frame]'
+
+
+@contextmanager
+def session(domain: int) -> Iterator[str]:
+    """The nodes of a session that practises; the page's address."""
+    os.environ['ROS_DOMAIN_ID'] = str(domain)
+    with tempfile.TemporaryDirectory() as folder:
+        content = parameters.load()
+        content['ppo_agent_node'].update(practice=True)
+        content['teleop_key_node'].update(screen='off')
+        content['teach_page_node'] = {'port': 0}
+        file = Path(folder) / 'parameters.yaml'
+        parameters.save(content, file)
+        nodes = {name: NodeProcess(name, file, Path(folder) / f'{name}.log') for name in NODES}
+        try:
+            for node in nodes.values():
+                node.start()
+                node.wait_ready(60.0)
+            yield _address(nodes['teach_page_node'].log)
+        finally:
+            for node in reversed(nodes.values()):
+                node.interrupt()
+                node.wait(10.0)
+
+
+def _address(log: Path) -> str:
+    while not (found := re.search(r'open (http\S+)', log.read_text())):
+        time.sleep(0.1)
+    return found[1]
+
+
+class Ear:
+    """Hears M_yh, and how far simulated time comes."""
+
+    def __init__(self, domain: int):
+        self._context = Context()
+        rclpy.init(context=self._context, domain_id=domain)
+        self._node = Node('bench', context=self._context)
+        self._human = Polled(self._node, contract.HUMAN_WRENCH)
+        self._clock = Polled(self._node, contract.CLOCK)
+
+    def wait_for(self, m_y: float) -> float:
+        """Wait until M_yh is ``m_y``; the time of the day then, ms."""
+        deadline = time.monotonic() + 10.0
+        while time.monotonic() < deadline:
+            message = self._human.wait(0.1)
+            if message is not None and message.wrench.torque.y == m_y:
+                return time.time() * 1e3
+        raise TimeoutError(f'M_yh did not become {m_y} N m within 10 s')
+
+    def real_time_factor(self, seconds: float) -> float:
+        """Simulated over real time."""
+        started, first = time.monotonic(), self._now()
+        time.sleep(seconds)
+        last = self._now()
+        return (last - first) / (time.monotonic() - started)
+
+    def _now(self) -> float:
+        self._clock.clear()
+        while (message := self._clock.wait(1.0)) is None:
+            pass
+        return message.clock.sec + message.clock.nanosec * 1e-9
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+
+def key_latencies(browser: Browser, ear: Ear) -> list[float]:
+    """From the browser's keydown event to M_yh on the topic, ms. Both clocks are this machine's."""
+    browser.script(_NOTE_KEYS)
+    latencies = []
+    for _ in range(PRESSES // 2):
+        for key, m_y in ((Keys.ARROW_LEFT, 5.0), (Keys.SPACE, 0.0)):
+            browser.keys().key_down(key).perform()
+            heard = ear.wait_for(m_y)
+            latencies.append(heard - browser.script('return pressedAt.pop()'))
+            browser.keys().key_up(key).perform()
+    return latencies
+
+
+def pictures_a_second(browser: Browser, seconds: float) -> tuple[float, float]:
+    """Pictures that came, and pictures of the scene that were drawn."""
+    before, started = browser.script(_COUNTS), time.monotonic()
+    time.sleep(seconds)
+    after, elapsed = browser.script(_COUNTS), time.monotonic() - started
+    came, drawn = ((b - a) / elapsed for a, b in zip(before, after, strict=True))
+    return came, drawn
+
+
+def measure() -> dict[str, Any]:
+    """Latency of a key (ms), pictures a second, and the real-time factor without and with the page open."""
+    domain = next(graph.DOMAINS)
+    with session(domain) as address:
+        ear = Ear(domain)
+        time.sleep(3.0)
+        without = ear.real_time_factor(SECONDS)
+        browser = Browser(*WINDOW, niceness=NICENESS)
+        try:
+            browser.open(address)
+            time.sleep(8.0)  # the scene has found its resolution
+            with_page = ear.real_time_factor(SECONDS)
+            came, drawn = pictures_a_second(browser, 10.0)
+            latencies = key_latencies(browser, ear)
+        finally:
+            browser.close()
+            ear.close()
+    p50, p95 = np.percentile(latencies, [50, 95])
+    return {'key_to_moment_ms': {'p50': round(p50, 1), 'p95': round(p95, 1), 'presses': len(latencies)},
+            'pictures_a_second': {'sent': round(came, 1), 'drawn': round(drawn, 1), 'window': list(WINDOW)},
+            'real_time_factor': {'without_page': round(without, 4), 'with_page': round(with_page, 4)},
+            'load_average': round(os.getloadavg()[0], 1)}
+
+
+if __name__ == '__main__':
+    print(json.dumps(measure(), indent=2))

@@ -1,0 +1,72 @@
+"""A recorded session, moment by moment."""
+
+import pytest
+from shared_control.session.bag import BagReadError, read_bag
+from shared_control.session.testing import lesson, record
+from teach_page_node.recording import Recording
+from teach_page_node.replay_desk import ReplayDesk
+
+
+@pytest.fixture(scope='module')
+def bag(tmp_path_factory):
+    """Two episodes of 2 s."""
+    return read_bag(record([lesson(seed=1), lesson(seed=2)]).write(tmp_path_factory.mktemp('bag') / 'bag'))
+
+
+def test_a_picture_is_what_was_recorded(bag):
+    picture = Recording(bag).picture(2.51)
+    one = lesson(seed=2)
+    assert picture.phase == 'teach'
+    assert picture.episode == 2
+    assert (picture.m_y_human, picture.m_y_agent) == (one.m_y_human[25], pytest.approx(one.m_y_agent[25]))
+    assert -picture.ball_on_tray[0] == pytest.approx(one.position_error[25], abs=1e-3)
+    assert picture.history.returns == [-100.0]
+    assert picture.message()['q'] == [round(angle, 4) for angle in picture.q.tolist()]
+
+
+def test_keys_are_lit_while_they_were_pressed(bag):
+    recording = Recording(bag)
+    assert recording.picture(0.41).keys == [1, 0, 0]
+    assert recording.picture(0.58).keys == [0, 0, 0]
+    assert recording.picture(0.41).hand == 'tutor'
+
+
+def test_both_ends_can_be_seen(bag):
+    recording = Recording(bag)
+    assert recording.length == pytest.approx(4.0, abs=0.01)
+    assert recording.picture(0.0).history.returns == []
+    assert recording.picture(recording.length).episode == 2
+
+
+def test_a_gap_between_two_runs_is_shortened(tmp_path):
+    made = record([lesson(seed=1)])
+    made.messages += record([lesson(seed=2)], start_ns=made.messages[-1][1] + 3_600_000_000_000).messages
+    recording = Recording(read_bag(made.write(tmp_path / 'bag')))
+    assert recording.length == pytest.approx(6.0, abs=0.01)
+    assert recording.picture(3.0).m_y_agent is None, 'nobody spoke in the gap'
+    assert recording.picture(5.0).m_y_agent is not None
+
+
+def test_a_bag_without_a_ball_is_refused(tmp_path):
+    path = record([lesson()]).write(tmp_path / 'bag', without=('/ball',))
+    with pytest.raises(BagReadError, match='nothing to see'):
+        Recording(read_bag(path))
+
+
+def test_the_player_seeks_holds_and_changes_speed(bag):
+    desk = ReplayDesk(Recording(bag))
+    desk.do('play', False)
+    desk.do('seek', 3)
+    desk.do('speed', 4)
+    assert desk.look().replay == {'position': 3.0, 'length': pytest.approx(4.0, abs=0.01), 'speed': 4.0, 'plays': False}
+    desk.do('seek', 1e9)
+    assert desk.look().replay['position'] == desk.look().replay['length']
+    desk.do('play', True)
+    assert desk.look().replay['position'] < 1.0, 'from the beginning'
+
+
+@pytest.mark.parametrize(('command', 'value'), [
+    ('seek', None), ('seek', float('nan')), ('speed', 3), ('speed', 'fast'), ('play', 1), ('stop', None)])
+def test_what_a_player_cannot_do_is_named(bag, command, value):
+    with pytest.raises(ValueError, match=command):
+        ReplayDesk(Recording(bag)).do(command, value)

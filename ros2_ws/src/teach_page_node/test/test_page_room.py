@@ -1,0 +1,78 @@
+"""One teaches, the others watch; what pages say is checked."""
+
+import pytest
+from starlette.applications import Starlette
+from starlette.routing import WebSocketRoute
+from starlette.testclient import TestClient
+from teach_page_node.picture import Picture
+from teach_page_node.room import Room
+
+
+class Notebook:
+    """A desk that notes what it is told."""
+
+    is_replay = is_over = False
+
+    def __init__(self):
+        self.notes = []
+
+    def look(self):
+        return Picture(pitch=0.1)
+
+    def press(self, buttons):
+        self.notes.append(buttons)
+
+    def let_go(self):
+        self.notes.append('let go')
+
+    def do(self, command, value):
+        if command == 'unknown':
+            raise ValueError(command)
+        self.notes.append((command, value))
+
+
+@pytest.fixture
+def desk():
+    return Notebook()
+
+
+@pytest.fixture
+def client(desk):
+    with TestClient(Starlette(routes=[WebSocketRoute('/live', Room(desk).receive)])) as client:
+        yield client
+
+
+def role(socket):
+    """The next role that a page is told."""
+    while 'role' not in (message := socket.receive_json()):
+        pass
+    return message['role']
+
+
+def test_the_first_page_teaches_and_leaves_no_moment_behind(client, desk):
+    with client.websocket_connect('/live') as first:
+        assert role(first) == {'teaches': True, 'seat_is_free': False, 'watchers': 0}
+        first.send_json({'keys': [1, 0, 0]})
+        with client.websocket_connect('/live') as second:
+            assert not role(second)['teaches']
+            second.send_json({'keys': [0, 1, 0]})
+            second.send_json({'do': 'stop'})
+            second.send_json({'do': 'take_seat'})
+            first.send_json({'do': 'pause', 'value': None})
+            first.close()
+            assert role(second) == {'teaches': False, 'seat_is_free': True, 'watchers': 1}
+            second.send_json({'do': 'take_seat'})
+            assert role(second)['teaches']
+    assert desk.notes == [[1, 0, 0], ('pause', None), 'let go', 'let go']
+
+
+@pytest.mark.parametrize('text', [
+    'no json', '[]', '7', '{}', '{"keys": [1, 0]}', '{"keys": [1, 0, 2]}', '{"keys": [true, 0, 0]}', '{"keys": null}',
+    '{"do": "unknown"}'])
+def test_what_makes_no_sense_is_dropped(client, desk, text, caplog):
+    with client.websocket_connect('/live') as page:
+        role(page)
+        page.send_text(text)
+        page.send_json({'keys': [0, 0, 0]})
+    assert desk.notes == [[0, 0, 0], 'let go']
+    assert 'dropped a message' in caplog.text
