@@ -28,8 +28,8 @@ def build(is_replay: bool) -> None:
         with ui.element('aside'):
             _help(is_replay)
             charts = {'moments': _chart('Moments, N m', _moment_options()),
-                      'returns': _chart('Return of each episode', _episode_options('#4c6ef5')),
-                      'shares': _chart('Your share of each episode, %', _episode_options('#f08a24', 100))}
+                      'returns': _chart('Return of each episode', _episode_options('#4263eb')),
+                      'shares': _chart('Human share of each episode, %', _episode_options('#e8590c', 100))}
             if not is_replay:
                 _buttons()
     _part('focus', 'button').classes('veil')
@@ -87,7 +87,7 @@ def _moments() -> None:
     with ui.element('div').classes('moments'):
         for name, who in _MOMENTS:
             with ui.element('div').classes(name):
-                ui.label(who)
+                _text(f'{name}-name', who)
                 _text(f'{name}-moment', '–').classes('number')
 
 
@@ -99,11 +99,11 @@ def _chart(title: str, options: dict[str, Any]) -> ui.echart:
 
 def _buttons() -> None:
     with ui.element('div').classes('buttons'):
-        _button('start', 'Start teaching').classes('main')
         _button('pause', 'Pause')
-        _button('repeat', 'Repeat episode')
-        _button('finish', 'It has learned it').classes('main')
+        _button('repeat', 'Repeat')
         _button('stop', 'Stop')
+        _button('start', 'Start teaching').classes('main')
+        _button('finish', 'It has learned it').classes('main')
         _button('take-seat', 'Teach from here').classes('main')
 
 
@@ -119,7 +119,7 @@ def _axes() -> dict[str, Any]:
 
 
 def _moment_options() -> dict[str, Any]:
-    series = [('you', '#f08a24', 2), ('robot', '#4c6ef5', 1), ('sum', '#868e96', 1)]
+    series = [('human', '#e8590c', 2), ('robot', '#4263eb', 1), ('together', '#868e96', 1)]
     return {**_axes(),
             'xAxis': {'type': 'value', 'min': -15, 'max': 0, 'interval': 5, 'axisLabel': {'formatter': '{value} s'}},
             'yAxis': {'type': 'value', 'min': -20, 'max': 20, 'interval': 10},
@@ -132,7 +132,7 @@ def _episode_options(colour: str, top: float | None = None) -> dict[str, Any]:
     return {**_axes(),
             'xAxis': {'type': 'category', 'data': []},
             'yAxis': {'type': 'value', 'scale': top is None, 'min': None if top is None else 0, 'max': top,
-                      'splitNumber': 3},
+                      'splitNumber': 2},
             'series': [{'type': 'line', 'data': [], 'symbolSize': 6, 'lineStyle': {'color': colour},
                         'itemStyle': {'color': colour}, 'areaStyle': {'opacity': 0.12}}]}
 
@@ -148,8 +148,6 @@ _REPLAY_HELP = (
 
 _CLOSE_VIEW = """
 <svg viewBox="-240 -60 480 168" data-part="close-view" role="img" aria-label="The tray from the front">
-  <defs><marker id="tip" viewBox="0 0 10 10" refX="6" refY="5" markerWidth="3.2" markerHeight="3.2" orient="auto">
-    <path d="M0 0L10 5L0 10z" fill="context-stroke"/></marker></defs>
   <line x1="-238" x2="238" y1="0" y2="0" class="level"/>
   <g data-part="tilt">
     <rect x="-205" y="0" width="410" height="8" rx="2" class="tray"/>
@@ -162,8 +160,8 @@ _CLOSE_VIEW = """
   <text x="-238" y="-46" data-part="tilt-text" class="tilt-text"></text>
   <g class="arrows">
     <line x1="0" x2="0" y1="46" y2="98" class="level"/>
-    <line data-part="arrow-human" y1="56" y2="56" class="human"/>
-    <line data-part="arrow-agent" y1="72" y2="72" class="agent"/>
-    <line data-part="arrow-applied" y1="90" y2="90" class="applied"/>
+    <path data-part="arrow-human" transform="translate(0 55)" class="human"/>
+    <path data-part="arrow-agent" transform="translate(0 72)" class="agent"/>
+    <path data-part="arrow-applied" transform="translate(0 91)" class="applied"/>
   </g>
 </svg>"""

@@ -6,6 +6,7 @@ const EXAGGERATION = 3;
 const MM = 1000; // 1 mm is a unit of the drawing
 const SURFACE = 0.006; // of the tray, in its frame, m
 const UNITS_A_NM = 10;
+const HEAD = 16;
 
 export function showCloseView(picture) {
   const { on_tray, pitch } = picture;
@@ -31,8 +32,8 @@ export function showCloseView(picture) {
 }
 
 function arrow(name, from, to) {
-  const line = part(`arrow-${name}`);
-  line.setAttribute("x1", (-from * UNITS_A_NM).toFixed(1));
-  line.setAttribute("x2", (-to * UNITS_A_NM).toFixed(1));
-  line.style.visibility = Math.abs(to - from) < 0.3 ? "hidden" : "visible";
+  const [tail, tip] = [-from * UNITS_A_NM, -to * UNITS_A_NM];
+  const neck = tip - Math.sign(tip - tail) * Math.min(HEAD, Math.abs(tip - tail));
+  part(`arrow-${name}`).setAttribute("d", Math.abs(tip - tail) < 1 ? "" :
+    `M${tail} -4H${neck}V-9L${tip} 0L${neck} 9V4H${tail}z`);
 }

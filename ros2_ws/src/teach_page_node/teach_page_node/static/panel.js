@@ -5,7 +5,7 @@ import { part, setText, show } from "./parts.js";
 const PHASES = {
   wait: ["Getting ready", "Waiting for the robot …"],
   practice: ["Practice", "The robot is off: you alone move the tray. Get the feel, then start teaching."],
-  teach: ["Teach", "The robot tries; help it."],
+  teach: ["Teach", "The robot tries; correct it with the keys."],
   learn: ["It learns", "The robot learns from your corrections …"],
   test: ["The robot alone", "Hands off: watch how it does without you."],
   done: ["Finished", "The lesson is over. The report is where the session was started."],
@@ -29,6 +29,7 @@ export function showPicture(picture, isReplay) {
   setText("time-left", left === null ? "" : `${left.toFixed(0)} s left`);
   part("time-bar").style.width = left === null ? "0" : `${(100 * left) / EPISODE_SECONDS[phase]}%`;
   setText("success", picture.success === null ? "not yet" : `${Math.round(100 * picture.success)} % kept in the middle`);
+  setText("human-name", picture.hand === "tutor" ? "simulated tutor" : role.teaches && !isReplay ? "you" : "human");
   for (const name of ["human", "agent", "applied"]) setText(`${name}-moment`, moment(picture[name]));
   if (isReplay) return;
   for (const [i, name] of ["left", "right", "space"].entries()) {
