@@ -24,6 +24,7 @@ setup(
     entry_points={
         'console_scripts': ['shared-control = shared_control.cli:main'],
         'shared_control.commands': [
+            'evaluate = shared_control.protocols.command:add_command',
             'validate = shared_control.validation.command:add_command',
             'report = shared_control.report.command:add_command',
             'study = shared_control.study.command:add_command',
