@@ -52,8 +52,8 @@ def domain_id() -> Iterator[int]:
 class RunningNode:
     """A node in a process of its own."""
 
-    def __init__(self, package: str, parameters: dict[str, Any], log: Path):
-        command = [sys.executable, '-m', f'{package}.node', '--ros-args']
+    def __init__(self, package: str, name: str, parameters: dict[str, Any], log: Path):
+        command = [sys.executable, '-m', f'{package}.node', '--ros-args', '-r', f'__node:={name or package}']
         for name, value in parameters.items():
             command += ['-p', f'{name}:={_yaml(value)}']
         self.log_file = log
@@ -96,12 +96,15 @@ def _yaml(value: Any) -> str:
 
 @pytest.fixture(scope='class')
 def start_node(domain_id: int, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., RunningNode]]:
-    """``start_node(package, **parameters)`` starts a node; all of them are ended with the test."""
+    """``start_node(package, name='', **parameters)`` starts a node, under another name if one is given.
+
+    All of them are ended with the test.
+    """
     nodes: list[RunningNode] = []
     logs = tmp_path_factory.mktemp('logs')
 
-    def start(package: str, **parameters: Any) -> RunningNode:
-        nodes.append(RunningNode(package, parameters, logs / f'{len(nodes)}_{package}.log'))
+    def start(package: str, name: str = '', **parameters: Any) -> RunningNode:
+        nodes.append(RunningNode(package, name, parameters, logs / f'{len(nodes)}_{package}.log'))
         return nodes[-1]
 
     yield start

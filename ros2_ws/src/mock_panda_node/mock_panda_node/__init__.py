@@ -1,0 +1,1 @@
+"""A mock Panda: the topics and the behaviour of an effort-controlled one, in simulation."""

@@ -1,0 +1,187 @@
+"""Mock of an effort-controlled Panda with tray and ball: the topics of a real robot and its behaviour, simulated.
+
+Its clock runs freely (wall time, no /clock), its ticks jitter, it loses commands, carries its own weight, stops by
+itself when a limit is violated, and recovers when asked to. Services: ~/error_recovery (Trigger), ~/reset (Trigger),
+~/pause (SetBool, refused: a robot's time does not stand still).
+"""
+
+import gc
+import time
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.task.balance import BallStarts
+from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
+from shared_control.world.effort_panda import EffortPanda, Mode
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background
+from shared_control_ros.parameters import declare
+from shared_control_ros.robot_inputs import PushInput, TorqueInput
+from shared_control_ros.runner import Stop, run
+from shared_control_ros.state_publisher import StatePublisher
+from std_srvs.srv import SetBool, Trigger
+
+PERIOD_NS = round(CONTROL_PERIOD * 1e9)
+POLICY_PERIOD_NS = TICKS_PER_ACTION * PERIOD_NS
+LAG_GIVEN_UP = 0.25
+"""A mock that is this far behind no longer tries to catch up; by the wall clock it leaves the missed time out, s."""
+
+
+class MockPandaNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('mock_panda_node')
+        self._jitter = declare(
+            node, 'jitter', 0.0005, 'A tick comes up to so much early or late.', unit='s', minimum=0.0, maximum=0.01)
+        self._drop_rate = declare(
+            node, 'drop_rate', 0.01, 'Share of the commands that get lost.', minimum=0.0, maximum=1.0)
+        limit_rate = declare(
+            node, 'limit_rate', True, "Approach a command that is too far from the last one, as libfranka's option "
+            'of that name does; false: it makes the robot stop.')
+        timeout = declare(
+            node, 'command_timeout', 0.1, 'Without a command for this long the control ends and the joints brake.',
+            unit='s', minimum=0.002, maximum=10.0)
+        seed = declare(
+            node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
+            minimum=0, maximum=2**31 - 1, read_only=False)
+
+        pace = declare(
+            node, 'pace', 1.0, "Of the robot's clock against the wall clock. Below 1, for a machine that is too slow "
+            'for 1 kHz, it publishes /clock: start the other nodes with use_sim_time.', minimum=0.01, maximum=1.0)
+        self._period = CONTROL_PERIOD / pace
+        self._has_clock = pace < 1.0
+
+        self._random = np.random.default_rng(seed)
+        self._starts = BallStarts(seed)
+        world = BallOnTrayWorld(Ball(), CONTROL_PERIOD)
+        world.reset(self._starts.next())
+        self._robot = EffortPanda(world, timeout, limit_rate)
+        self._states = StatePublisher(node, world, with_clock=self._has_clock)
+        self._commands = TorqueInput(node)
+        self._pushes = PushInput(node, world, round(timeout / CONTROL_PERIOD))
+        node.create_service(Trigger, '~/error_recovery', self._on_error_recovery)
+        node.create_service(Trigger, '~/reset', self._on_reset)
+        node.create_service(SetBool, '~/pause', self._on_pause)
+        node.add_on_set_parameters_callback(self._on_parameters)
+        self._background = Background(node)
+        self._diagnostics = Diagnostics(node, self._period)
+
+        self._tick = 0
+        self._reflexes = 0
+        self._dropped = 0
+
+    def run(self, stop: Stop) -> None:
+        """Tick until told to stop."""
+        # What a tick makes is freed by reference counts; a collection in mid-tick would only make it late.
+        gc.freeze()
+        gc.disable()
+        # The robot's clock: stamps are whole milliseconds, and policy ticks are multiples of 20 ms.
+        self._start_ns = time.time_ns() // POLICY_PERIOD_NS * POLICY_PERIOD_NS
+        self._due = time.monotonic()
+        while not stop.requested:
+            self._wait_for_tick()
+            if self._tick % TICKS_PER_ACTION == 0:
+                self._background.poll()
+                self._pushes.update(self._tick)
+            mode = self._robot.mode
+            self._robot.tick(self._take_command())
+            self._tick += 1
+            self._states.publish(self._tick, self._start_ns + self._tick * PERIOD_NS, self._robot.torque)
+            self._diagnostics.tick()
+            if self._robot.mode is not mode:
+                self._on_mode()
+            if self._diagnostics.due():
+                self._report()
+
+    def _wait_for_tick(self) -> None:
+        self._due += self._period
+        late = time.monotonic() - self._due
+        if late > LAG_GIVEN_UP:
+            actions = round(late / (TICKS_PER_ACTION * self._period))
+            self._due += actions * TICKS_PER_ACTION * self._period
+            if not self._has_clock:
+                self._start_ns += actions * POLICY_PERIOD_NS
+                self.node.get_logger().warning(
+                    f'this machine is too slow: {late:.2f} s are left out (see parameter pace)',
+                    throttle_duration_sec=1.0)
+        wait = self._due - time.monotonic() + self._random.uniform(-self._jitter, self._jitter)
+        if wait > 0.0:
+            time.sleep(wait)
+
+    def _take_command(self) -> np.ndarray | None:
+        torque = self._commands.take_torque()
+        if torque is not None and self._random.random() < self._drop_rate:
+            self._dropped += 1
+            return None
+        return torque
+
+    # -- services ----------------------------------------------------------------------------------------------------
+
+    def _on_error_recovery(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success = self._robot.recover()
+        response.message = 'recovered: the next torques move the arm' if response.success else 'there is no error'
+        return response
+
+    def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        ball_x = self._starts.next()
+        self._robot.reset(ball_x)
+        response.success = True
+        response.message = f'arm put back, ball dropped at x = {ball_x:.4f} m'
+        return response
+
+    def _on_pause(self, _: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        response.success = False
+        response.message = "a robot's time does not stand still"
+        return response
+
+    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name == 'seed':
+                self._starts.seed(parameter.value)
+        return SetParametersResult(successful=True)
+
+    # -- output ------------------------------------------------------------------------------------------------------
+
+    def _on_mode(self) -> None:
+        if self._robot.mode is Mode.REFLEX:
+            self._reflexes += 1
+            self.node.get_logger().error(self._fault())
+        else:
+            self.node.get_logger().info(f'mode: {self._robot.mode.value}')
+        self._report()
+
+    def _fault(self) -> str:
+        return f'reflex stop: {self._robot.fault}; to go on: {self.node.get_fully_qualified_name()}/error_recovery'
+
+    def _report(self) -> None:
+        mode = self._robot.mode
+        problems = {}
+        if mode is Mode.REFLEX:
+            problems['robot'] = self._fault()
+        elif mode is Mode.IDLE:
+            problems[self._commands.topic_name] = 'no torques: held by the brakes'
+        self._diagnostics.publish(
+            problems, level=DiagnosticStatus.ERROR if mode is Mode.REFLEX else None, mode=mode.value,
+            reflexes=self._reflexes, dropped_commands=self._dropped, limited_ticks=self._robot.limited_ticks,
+            ticks=self._tick)
+
+    def close(self) -> None:
+        """Publish the figures of the whole run and free the physics server."""
+        self._report()
+        self._states.flush()
+        self._background.close()
+        self._robot.world.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(MockPandaNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

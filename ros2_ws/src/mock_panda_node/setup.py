@@ -1,0 +1,21 @@
+from setuptools import find_packages, setup
+
+package_name = 'mock_panda_node'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    install_requires=['shared_control', 'shared_control_ros', 'rclpy'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='shared-control maintainers',
+    maintainer_email='maintainers@shared-control.invalid',
+    description='A mock Panda: the topics and the behaviour of an effort-controlled one, in simulation.',
+    license='Apache-2.0',
+    entry_points={'console_scripts': ['mock_panda_node = mock_panda_node.node:main']},
+)

@@ -1,0 +1,23 @@
+"""The node alone; on the graph it is tested in tests/test_mock_panda.py."""
+
+import signal
+
+import pytest
+from shared_control_ros import contract
+
+
+def test_leaves_cleanly_and_has_told_its_mode(start_node, observer):
+    reports = observer.listen(contract.DIAGNOSTICS)
+    node = start_node('mock_panda_node', pace=0.5)
+    observer.spin(lambda: reports)
+    assert {v.key: v.value for v in reports[0].status[0].values}['mode'] == 'idle'
+    assert 'held by the brakes' in reports[0].status[0].message
+    assert node.stop(signal.SIGINT) == 0
+    assert 'Traceback' not in node.log()
+
+
+@pytest.mark.parametrize(('parameters', 'said'), [({'drop_rate': 2.0}, "'drop_rate'"), ({'pace': 0.0}, "'pace'")])
+def test_wrong_parameters_are_named(start_node, parameters, said):
+    node = start_node('mock_panda_node', **parameters)
+    assert node.process.wait(20) == 2
+    assert said in node.log() and 'Traceback' not in node.log()

@@ -1,0 +1,182 @@
+"""The graph on the mock of a real Panda: the same tests as with the simulator, and what only a robot does.
+
+The mock runs with its jitter and losses, at a quarter of its pace, since a test machine is no real-time machine.
+"""
+
+import numpy as np
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import WrenchStamped
+from ppo_agent_node.graph_plant import GraphPlant
+from shared_control.envs.balance_env import BalanceEnv
+from shared_control.envs.plant import PlantInterrupted
+from shared_control.robot.limits import JOINT_NAMES, Q_MAX, Q_MIN, QD_MAX, TORQUE_MAX
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Background
+from shared_control_ros.stamps import to_ns
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool, Trigger
+
+LATE = {'enabled': True, 'prediction_horizon': 0.01}
+ROBOTS = {
+    'panda_sim_node': ({'paced': False, 'seed': 3}, {'enabled': True}),
+    'mock_panda_node': ({'pace': 0.25, 'seed': 3}, {**LATE, 'robot_compensates_gravity': True}),
+}
+STEPS = 175
+"""3.5 s: when nobody balances it, the ball lies at the end of the tray by then."""
+
+
+def balance(observation):
+    """A law made by hand: the tilt that brings the ball to the centre, from error, velocity and pitch; (1,)."""
+    error, velocity, pitch = observation * [0.2, 0.3, 0.1]
+    return np.array([np.clip((-2.1 + 100.0 * (0.6 * error - 0.45 * velocity - pitch)) / 8.0, -1.0, 1.0)])
+
+
+class Robot:
+    """A robot, the controller, and the agent's end of the graph in this process."""
+
+    def __init__(self, observer, start_node, package):
+        parameters, controller = ROBOTS[package]
+        self.observer = observer
+        self.states = observer.listen(contract.JOINT_STATES, depth=10_000)
+        self.balls = observer.listen(contract.BALL)
+        self.reports = observer.listen(contract.DIAGNOSTICS)
+        # The robot has the simulator's name, which stands in the contract's services.
+        self._nodes = [start_node('torque_ctrl_node', **controller),
+                       start_node(package, name='panda_sim_node', **parameters)]
+        self._background = Background(observer.node)
+        self.env = BalanceEnv(GraphPlant(observer.node, self._background, observer.take_all))
+        self.env.plant.wait_until_up()
+
+    def balance(self, steps):
+        """Drop the ball and balance it; position errors, m, and velocities, m/s, of each step."""
+        while True:
+            observation, info = self.env.reset(seed=5)
+            states = [info['state']]
+            self.states.clear()
+            try:
+                while len(states) <= steps:
+                    observation, _, fallen, _, info = self.env.step(balance(observation))
+                    states.append(info['state'])
+                    assert not fallen
+            except PlantInterrupted:  # the machine was busy for a second: the agent begins anew, too
+                continue
+            return [s.position_error for s in states], [s.ball_velocity for s in states]
+
+    def spin(self, until, what=''):
+        self.observer.spin(until, 60.0, what)
+
+    def call(self, service_type, name, request):
+        """The node is the background's while a plant uses it."""
+        client = self.observer.node.create_client(service_type, name)
+        assert client.wait_for_service(20.0), name
+        future = client.call_async(request)
+        for _ in range(400):
+            self._background.spin_once(0.05)
+            if future.done():
+                return future.result()
+        raise AssertionError(f'no answer of {name}')
+
+    def said(self, key):
+        """The values that the robot's diagnostics gave for ``key``."""
+        return [v.value for r in self.reports if r.status[0].name == '/panda_sim_node'
+                for v in r.status[0].values if v.key == key]
+
+    def close(self):
+        self.env.close()
+        self._background.close()
+        for node in self._nodes:
+            node.stop()
+
+
+@pytest.fixture(scope='class', params=tuple(ROBOTS))
+def robot(request, observer, start_node):
+    robot = Robot(observer, start_node, request.param)
+    yield robot
+    robot.close()
+
+
+@pytest.fixture(scope='class')
+def mock(observer, start_node):
+    robot = Robot(observer, start_node, 'mock_panda_node')
+    yield robot
+    robot.close()
+
+
+class TestEveryRobot:
+    """Simulator and mock alike."""
+
+    def test_a_policy_keeps_the_ball_within_all_limits(self, robot):
+        error, velocity = robot.balance(STEPS)
+        assert abs(error[0]) > 0.1 and abs(error[-1]) < 0.04 and abs(velocity[-1]) < 0.06
+        assert 'reflex' not in robot.said('mode')
+
+        q, qd, torque = (np.array([getattr(m, field) for m in robot.states])
+                         for field in ('position', 'velocity', 'effort'))
+        assert (q >= Q_MIN).all() and (q <= Q_MAX).all()
+        assert (np.abs(qd) <= QD_MAX).all()
+        assert (np.abs(torque) <= TORQUE_MAX).all()
+        stamps = np.array([to_ns(m.header.stamp) for m in robot.states])
+        assert (np.diff(torque, axis=0)[np.diff(stamps) == 1_000_000] <= 1.0 + 1e-6).all(), '1000 N m/s'
+
+    def test_topics_are_those_of_the_contract(self, robot):
+        robot.spin(lambda: len(robot.balls) > 5 and robot.states)
+        assert list(robot.states[-1].name) == list(JOINT_NAMES)
+        assert robot.balls[-1].header.frame_id == robot.states[-1].header.frame_id == contract.BASE_FRAME
+        stamps = [to_ns(m.header.stamp) for m in robot.balls]
+        assert all(stamp % 10_000_000 == 0 for stamp in stamps) and stamps == sorted(stamps)
+
+    def test_a_push_tilts_the_tray(self, robot):
+        publisher = robot.observer.publisher(contract.DISTURBANCE)
+        push = WrenchStamped()
+        push.header.frame_id = contract.BASE_FRAME
+        push.wrench.force.z = -30.0
+        robot.env.reset(seed=5)
+
+        def moved():
+            publisher.publish(push)
+            return np.abs(np.array(robot.states[-1].position) - Q_REFERENCE).max() > 0.02
+
+        robot.spin(moved)
+
+
+class TestOnlyARobot:
+    """What the mock has ahead of the simulator."""
+
+    def test_it_loses_commands_and_goes_on(self, mock):
+        mock.env.reset(seed=1)
+        mock.spin(lambda: mock.said('dropped_commands') and int(mock.said('dropped_commands')[-1]) > 3)
+        assert mock.said('mode')[-1] == 'move'
+
+    def test_time_does_not_stand_still(self, mock):
+        response = mock.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=True))
+        assert not response.success and 'does not stand still' in response.message
+        count = len(mock.states)
+        mock.spin(lambda: len(mock.states) > count + 50)
+
+    def test_a_violated_limit_stops_it_until_it_is_told_to_recover(self, mock):
+        publisher = mock.observer.publisher(contract.EFFORT_COMMANDS)
+        wild = Float64MultiArray(data=[0.0] * 6 + [500.0])
+
+        def stopped():
+            publisher.publish(wild)  # another source of torques, against the controller
+            return mock.said('mode')[-1] == 'reflex'
+
+        mock.spin(stopped, 'a reflex stop')
+        report = next(r.status[0] for r in reversed(mock.reports) if r.status[0].name == '/panda_sim_node')
+        assert report.level == DiagnosticStatus.ERROR
+        assert 'violation: ' in report.message and '/panda_sim_node/error_recovery' in report.message
+        mock.observer.node.destroy_publisher(publisher)
+
+        count = len(mock.states)
+        mock.spin(lambda: len(mock.states) > count + 300)
+        assert np.abs(mock.states[-1].velocity).max() < 1e-3 and mock.said('mode')[-1] == 'reflex'
+        assert not any(mock.states[-1].effort)
+
+        assert mock.call(Trigger, 'panda_sim_node/error_recovery', Trigger.Request()).success
+        assert not mock.call(Trigger, 'panda_sim_node/error_recovery', Trigger.Request()).success
+        mock.spin(lambda: mock.said('mode')[-1] == 'move', 'control goes on')
+        error, _ = mock.balance(50)
+        assert max(np.abs(error)) < 0.17, 'it rolls inwards'
+        assert mock.said('mode')[-1] == 'move'
