@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
+from markupsafe import Markup
 
 from ..files import write_atomically
 from .bag import Bag, BagReadError, read_bag
@@ -17,6 +18,8 @@ from .summary import Summary, summarize
 from .tracks import episode_tracks
 
 _PAGE = Path(__file__).parent / 'page.html'
+STYLE_SHEET = Path(__file__).with_name('page.css')
+"""Of this page and of other reports."""
 _NOT_KNOWN = '–'
 
 
@@ -48,8 +51,8 @@ def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     environment.filters['number'] = _number
     return environment.from_string(_PAGE.read_text()).render(
-        title=_title(summary), s=summary, rows=rows, test=test, figures=_figures(summary), done=_done(summary),
-        picture=base64.b64encode(picture).decode(),
+        css=Markup(STYLE_SHEET.read_text()), title=_title(summary), s=summary, rows=rows, test=test,
+        figures=_figures(summary), done=_done(summary), picture=base64.b64encode(picture).decode(),
         alt='Ball in each episode, final test, moments of human and robot, return and human share by episode')
 
 

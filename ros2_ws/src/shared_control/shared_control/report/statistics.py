@@ -1,0 +1,123 @@
+"""Statistics of a study: few runs, skewed, some censored (Agarwal et al., 2021, "Deep RL at the edge of the statistical
+precipice"). Their package rliable gives the same numbers (docs/study.md), but drags in packages that do not go with
+today's pandas; what is needed of it stands here.
+
+Participants are resampled within their group (stratum): a study of two experts and eleven novices stays one.
+"""
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+CONFIDENCE = 0.95
+RESAMPLES = 5000
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number and its 95 % interval; nan where there is nothing to tell it from, inf where it was never reached."""
+
+    value: float
+    low: float
+    high: float
+
+
+def iqm(values: np.ndarray) -> np.ndarray:
+    """Interquartile mean along the last axis: of the middle half, so that no single run decides."""
+    return stats.trim_mean(values, 0.25, axis=-1)
+
+
+def bootstrap(values: np.ndarray, strata: np.ndarray, statistic: Callable[[np.ndarray], np.ndarray] = iqm,
+              seed: int = 0) -> Estimate:
+    """A statistic with its percentile interval, by resampling participants within their strata.
+
+    Args:
+        values: one a participant, (n,).
+        strata: of each participant, (n,).
+        statistic: along the last axis.
+    """
+    if not len(values):
+        return Estimate(np.nan, np.nan, np.nan)
+    random = np.random.default_rng(seed)
+    members = [np.flatnonzero(strata == stratum) for stratum in np.unique(strata)]
+    drawn = np.hstack([random.choice(rows, (RESAMPLES, len(rows))) for rows in members])
+    tail = 50 * (1 - CONFIDENCE)
+    low, high = np.percentile(statistic(values[drawn]), [tail, 100 - tail])
+    return Estimate(float(statistic(values)), float(low), float(high))
+
+
+def improvement(better: np.ndarray, strata: np.ndarray) -> Estimate:
+    """Probability of improvement, paired: how often a participant's run in one condition beats theirs in the other.
+
+    Args:
+        better: 1 where it does, 0 where it does not, 0.5 for a tie, (n,).
+    """
+    return bootstrap(better, strata, lambda rows: rows.mean(axis=-1))
+
+
+def beats(first: np.ndarray, second: np.ndarray, lower_is_better: bool) -> np.ndarray:
+    """For :func:`improvement`: whether ``first`` beats ``second``, pair by pair."""
+    gain = second - first if lower_is_better else first - second
+    return np.heaviside(gain, 0.5)
+
+
+def sooner(first: 'Times', second: 'Times') -> np.ndarray:
+    """For :func:`improvement`: whether ``first`` was reached before ``second``, pair by pair. Where one was given up
+    before the other was reached, nobody knows: a tie."""
+    known_first = first.reached & (first.episodes <= second.episodes)
+    known_second = second.reached & (second.episodes <= first.episodes)
+    return 0.5 + 0.5 * (known_first.astype(float) - known_second.astype(float))
+
+
+@dataclass(frozen=True, eq=False)
+class Times:
+    """Episodes until something was reached, or until it was given up (censored)."""
+
+    episodes: np.ndarray
+    """(n,)"""
+    reached: np.ndarray
+    """(n,), bool"""
+
+
+@dataclass(frozen=True, eq=False)
+class Survival:
+    """The Kaplan-Meier estimate of how many have not reached it yet, with Greenwood's interval (log-log)."""
+
+    episodes: np.ndarray
+    """(k,), from 0"""
+    waiting: np.ndarray
+    """(k,), share, 1 at first"""
+    low: np.ndarray
+    """(k,)"""
+    high: np.ndarray
+    """(k,)"""
+    median: Estimate
+    """inf when half of them never reached it."""
+
+
+def survival(times: Times) -> Survival:
+    """Time to event with censoring."""
+    curve = stats.ecdf(stats.CensoredData.right_censored(times.episodes, ~times.reached)).sf
+    with warnings.catch_warnings(), np.errstate(divide='ignore', invalid='ignore'):
+        warnings.simplefilter('ignore', RuntimeWarning)  # where the estimate is 0 or 1 there is no interval
+        interval = curve.confidence_interval(CONFIDENCE, method='log-log')
+    waiting = curve.probabilities
+    low = np.minimum(_held(interval.low.probabilities), waiting)
+    high = _held(interval.high.probabilities)
+
+    def when_half(shares: np.ndarray) -> float:
+        return float(curve.quantiles[shares <= 0.5].min(initial=np.inf))
+
+    return Survival(
+        np.concatenate([[0.0], curve.quantiles]), np.concatenate([[1.0], waiting]), np.concatenate([[1.0], low]),
+        np.concatenate([[1.0], high]), Estimate(when_half(waiting), when_half(low), when_half(high)))
+
+
+def _held(band: np.ndarray) -> np.ndarray:
+    """A band without its gaps: what is not a number repeats the value before it, 1 at first."""
+    known = np.concatenate([[1.0], band])
+    last = np.maximum.accumulate(np.where(np.isfinite(known), np.arange(len(known)), 0))
+    return known[last][1:]
