@@ -17,8 +17,8 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node',
-        'ppo_agent_node', 'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'panda_tray_description',
-        'pyyaml',
+        'ppo_agent_node', 'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'teach_page_node',
+        'panda_tray_description', 'pyyaml',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,

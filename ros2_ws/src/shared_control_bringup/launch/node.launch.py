@@ -7,7 +7,7 @@ from shared_control_bringup.launching import common_arguments, end_with, environ
 
 NODES = [
     'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node', 'sim_tutor_node',
-    'session_recorder_node', 'robot_view_node']
+    'session_recorder_node', 'robot_view_node', 'teach_page_node']
 
 
 def generate_launch_description() -> LaunchDescription:

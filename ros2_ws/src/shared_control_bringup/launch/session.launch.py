@@ -34,12 +34,12 @@ def controller(context: LaunchContext, output: SomeSubstitutionsType) -> list[No
 def generate_launch_description() -> LaunchDescription:
     """See the module."""
     tutor, output = LaunchConfiguration('tutor'), LaunchConfiguration('output')
-    by_hand, simulated = EqualsSubstitution(tutor, 'keyboard'), EqualsSubstitution(tutor, 'sim')
+    by_hand, in_browser, simulated = (EqualsSubstitution(tutor, choice) for choice in ('keyboard', 'page', 'sim'))
     seed = ParameterValue(LaunchConfiguration('seed'), value_type=int)
     said = IfElseSubstitution(by_hand, 'own_log', 'screen')
     return LaunchDescription([
-        DeclareLaunchArgument('tutor', default_value='keyboard', choices=['keyboard', 'sim', 'none'],
-                              description='Who teaches: you at this terminal, a simulated tutor, or nobody.'),
+        DeclareLaunchArgument('tutor', default_value='keyboard', choices=['keyboard', 'page', 'sim', 'none'],
+                              description='Who teaches: you, here or in a browser, a simulated tutor, or nobody.'),
         DeclareLaunchArgument('profile', default_value='expert', choices=list(PROFILES),
                               description='Of the simulated tutor.'),
         DeclareLaunchArgument('preset', default_value='coached', choices=list(PRESETS),
@@ -59,13 +59,15 @@ def generate_launch_description() -> LaunchDescription:
             graph_node('panda_sim_node', parameters={'seed': seed}, output=said),
             graph_node('teleop_key_node', parameters={'screen': IfElseSubstitution(by_hand, 'auto', 'off')},
                        output=said),
+            graph_node('teach_page_node', output=said, condition=IfCondition(in_browser)),
             graph_node('sim_tutor_node', parameters={'profile': LaunchConfiguration('profile'), 'seed': seed},
                        output=said, condition=IfCondition(simulated)),
             graph_node('ppo_agent_node', parameters={
                 'preset': LaunchConfiguration('preset'), 'seed': seed,
                 'episodes': ParameterValue(LaunchConfiguration('episodes'), value_type=int),
+                'practice': ParameterValue(in_browser, value_type=bool),
                 'output': PathJoinSubstitution([output, 'learner'])}, output=said),
         ]),
         view(),
-        end_with('ppo_agent_node'),
+        end_with('ppo_agent_node', 'teach_page_node'),
     ])

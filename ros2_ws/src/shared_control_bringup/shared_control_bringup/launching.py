@@ -71,13 +71,13 @@ def view(**arguments: SomeSubstitutionsType) -> IncludeLaunchDescription:
         condition=IfCondition(LaunchConfiguration('view')))
 
 
-def end_with(leader: str = '') -> RegisterEventHandler:
-    """End the launch when ``leader`` is done, or when a node cannot run with its parameters or files."""
+def end_with(*leaders: str) -> RegisterEventHandler:
+    """End the launch when one of the ``leaders`` is done, or when a node cannot run with its parameters or files."""
     def look(event: ProcessExited, _: LaunchContext) -> list[Action] | None:
         if event.returncode == UNUSABLE:
             return [Shutdown(reason=f'{event.process_name} cannot run with its parameters or files: see its output')]
-        if leader and event.returncode == 0 and event.process_name.startswith(leader):
-            return [Shutdown(reason=f'{leader} is done')]
+        if event.returncode == 0 and event.process_name.startswith(leaders):
+            return [Shutdown(reason=f'{event.process_name} is done')]
         return None
 
     return RegisterEventHandler(OnProcessExit(on_exit=look))
