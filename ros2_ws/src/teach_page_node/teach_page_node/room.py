@@ -14,10 +14,15 @@ log = logging.getLogger(__name__)
 
 
 class Visitor:
-    """A page that is open somewhere. A slow one misses pictures, and delays nobody."""
+    """A page that is open somewhere. A slow one misses pictures, and delays nobody.
 
-    def __init__(self, socket: WebSocket):
+    Args:
+        name: what the page calls itself when it comes back after a lost connection.
+    """
+
+    def __init__(self, socket: WebSocket, name: str):
         self.socket = socket
+        self.name = name
         self._words: list[str] = []
         self._picture: str | None = None
         self._news = asyncio.Event()
@@ -46,24 +51,28 @@ class Visitor:
 class Room:
     """All visitors, and the one whose keys count.
 
-    The first to come teaches. When the teacher goes, the others go on watching until one of them takes the seat.
+    The first to come teaches. When the teacher goes, the others go on watching until one of them takes the seat; a
+    teacher that comes back (a reload, a lost connection) has it again.
     """
 
     def __init__(self, desk: Desk):
         self._desk = desk
         self._visitors: list[Visitor] = []
         self._teacher: Visitor | None = None
+        self._seat_of = ''
+        """The name of the page that teaches, or did last."""
         self._history: dict[str, Any] = History().message()
 
     async def receive(self, socket: WebSocket) -> None:
         """Serve one page from its coming to its going."""
         await socket.accept()
-        visitor = Visitor(socket)
+        visitor = Visitor(socket, socket.query_params.get('page', ''))
         self._visitors.append(visitor)
-        if len(self._visitors) == 1:
-            self._teacher = visitor
         visitor.tell({'history': self._history})
-        self._tell_roles()
+        if len(self._visitors) == 1 or (visitor.name and visitor.name == self._seat_of):
+            self._seat(visitor)
+        else:
+            self._tell_roles()
         sender = asyncio.create_task(visitor.serve())
         try:
             async for text in socket.iter_text():
@@ -87,6 +96,12 @@ class Room:
             for visitor in self._visitors:
                 visitor.show(text)
 
+    def _seat(self, visitor: Visitor) -> None:
+        if self._teacher is not None:  # its old connection, not yet known to be lost
+            self._desk.let_go()
+        self._teacher, self._seat_of = visitor, visitor.name
+        self._tell_roles()
+
     def _leave(self, visitor: Visitor) -> None:
         self._visitors.remove(visitor)
         if visitor is self._teacher:
@@ -104,7 +119,8 @@ class Room:
         try:
             message = json.loads(text)
             if message == {'do': 'take_seat'}:
-                self._take_seat(visitor)
+                if self._teacher is None:
+                    self._seat(visitor)
             elif visitor is not self._teacher:
                 return
             elif 'keys' in message:
@@ -115,11 +131,6 @@ class Room:
                 self._desk.do(message['do'], message.get('value'))
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             log.warning('dropped a message of a page: %s (%.100r)', error, text)
-
-    def _take_seat(self, visitor: Visitor) -> None:
-        if self._teacher is None:
-            self._teacher = visitor
-            self._tell_roles()
 
 
 def _buttons(value: Any) -> list[int]:

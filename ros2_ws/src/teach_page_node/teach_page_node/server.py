@@ -17,7 +17,7 @@ from .layout import build
 from .room import Room
 
 STATIC = Path(__file__).parent / 'static'
-GONE_AFTER = 2.0
+GONE_AFTER = 5.0
 """A browser that does not answer for this long is gone, s."""
 
 

@@ -66,6 +66,17 @@ def test_the_first_page_teaches_and_leaves_no_moment_behind(client, desk):
     assert desk.notes == [[1, 0, 0], ('pause', None), 'let go', 'let go']
 
 
+def test_a_teacher_that_comes_back_has_the_seat_again(client, desk):
+    with client.websocket_connect('/live?page=a') as first, client.websocket_connect('/live?page=b') as second:
+        assert role(first)['teaches']
+        assert not role(second)['teaches']
+        with client.websocket_connect('/live?page=a') as again:  # the server does not know yet that the first is lost
+            assert role(again) == {'teaches': True, 'seat_is_free': False, 'watchers': 2}
+            first.send_json({'keys': [1, 0, 0]})
+            again.send_json({'keys': [0, 1, 0]})
+    assert desk.notes == ['let go', [0, 1, 0], 'let go']
+
+
 @pytest.mark.parametrize('text', [
     'no json', '[]', '7', '{}', '{"keys": [1, 0]}', '{"keys": [1, 0, 2]}', '{"keys": [true, 0, 0]}', '{"keys": null}',
     '{"do": "unknown"}'])

@@ -1,14 +1,18 @@
 // One WebSocket: pictures come, keys go. It connects again by itself.
 
 const RETRY_MS = 1000;
-const SILENT_MS = 2000;
+const SILENT_MS = 5000;
+
+// The page's name, by which a teacher has the seat again after a reload or a lost connection.
+const name = sessionStorage.getItem("page") ?? crypto.getRandomValues(new Uint32Array(2)).join("-");
+sessionStorage.setItem("page", name);
 
 export function connect(handlers) {
   let socket = null;
   let heardAt = 0;
 
   function open() {
-    socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live`);
+    socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/live?page=${name}`);
     heardAt = performance.now();
     socket.onmessage = (event) => {
       heardAt = performance.now();
