@@ -1,0 +1,58 @@
+"""The documentation says what the code says."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+from rclpy.qos import DurabilityPolicy
+from shared_control_ros.contract import JOINT_STATES_THROTTLE, TOPICS
+
+ROOT = Path(__file__).parents[1]
+SOURCES = ROOT / 'ros2_ws' / 'src'
+PAGES = sorted([*ROOT.glob('*.md'), *ROOT.glob('docs/*.md'), *SOURCES.glob('*/README.md')])
+
+
+def name_of(page):
+    return str(page.relative_to(ROOT))
+
+
+def test_the_contract_page_has_the_topics_of_the_code():
+    page = (ROOT / 'docs' / 'contract.md').read_text()
+    rows = re.findall(r'^\| `(/\S+)` \| (\w+/\w+) \|.*?\|.*?\| (latched, )?(\d+) \|', page, re.MULTILINE)
+    said = {name: (kind, bool(latched), int(depth)) for name, kind, latched, depth in rows}
+    assert said == {
+        '/' + topic.name.removeprefix('/'): (
+            f'{topic.msg_type.__module__.split(".")[0]}/{topic.msg_type.__name__}',
+            topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL, topic.qos.depth)
+        for topic in (*TOPICS, JOINT_STATES_THROTTLE)}
+
+
+def test_the_errors_of_troubleshooting_are_those_of_the_code():
+    nodes = (node for path in [*SOURCES.glob('*/*/*.py'), ROOT / 'tools' / 'check_machine.py']
+             for node in ast.walk(ast.parse(path.read_text())))
+    strings = ' '.join(node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str))
+    quoted = re.findall(r'^> (.+)$', (ROOT / 'docs' / 'troubleshooting.md').read_text(), re.MULTILINE)
+    assert len(quoted) == 4
+    for message in quoted:
+        longest = max(re.split(r'error: |/effort_controller/commands|[\d.]+ s', message), key=len).strip()
+        assert longest in strings, message
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r'\]\(([^)#:]+)(?:#[^)]*)?\)', page.read_text()):
+        assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_ros_commands_name_what_exists(page):
+    text = page.read_text()
+    for package, executable in re.findall(r'ros2 run ([a-z]\w+) (\w+)', text):
+        if package != 'plotjuggler':
+            assert re.search(rf"'{executable} = ", (SOURCES / package / 'setup.py').read_text())
+    for file, rest in re.findall(r'ros2 launch shared_control_bringup (\w+\.launch\.py)([^\n#]*)', text):
+        bringup = SOURCES / 'shared_control_bringup'
+        source = (bringup / 'launch' / file).read_text() + (bringup / bringup.name / 'launching.py').read_text()
+        for argument in re.findall(r'(\w+):=', rest):
+            assert re.search(rf"DeclareLaunchArgument\(\s*'{argument}'", source), argument
