@@ -27,6 +27,7 @@ TYPES = {
     topics.APPLIED_WRENCH: 'geometry_msgs/msg/WrenchStamped',
     topics.BALL: 'nav_msgs/msg/Odometry',
     topics.DISTURBANCE: 'geometry_msgs/msg/WrenchStamped',
+    topics.EMERGENCY_STOP: 'std_msgs/msg/Bool',
     topics.DIAGNOSTICS: 'diagnostic_msgs/msg/DiagnosticArray',
     topics.CLOCK: 'rosgraph_msgs/msg/Clock',
     topics.EPISODE: 'std_msgs/msg/Int32',
