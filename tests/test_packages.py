@@ -14,12 +14,13 @@ PACKAGES = sorted(path.parent for path in (ROOT / 'ros2_ws' / 'src').glob('*/pac
 NAMES = {package.name for package in PACKAGES}
 ROSDEP = {
     'numpy': 'python3-numpy', 'yaml': 'python3-yaml', 'matplotlib': 'python3-matplotlib', 'jinja2': 'python3-jinja2',
-    'scipy': 'python3-scipy', 'pandas': 'python3-pandas', 'tqdm': 'python3-tqdm'}
+    'markupsafe': 'python3-jinja2', 'scipy': 'python3-scipy', 'pandas': 'python3-pandas', 'tqdm': 'python3-tqdm'}
 """Keys of modules that a Jazzy machine gets from Debian packages."""
-PIP = {'pinocchio': 'pin', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
+PIP = {'pinocchio': 'pin', 'markupsafe': 'jinja2', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
 """Where modules come from that are in no distribution of their name."""
 ROS = {'rclpy', 'launch', 'launch_ros'}
-FOR_TESTS = {'pytest'}
+OPTIONAL = {'pytest', 'panda_py'}
+"""Imported where they are needed, with a clear message when they are missing."""
 
 
 def tree(package):
@@ -48,7 +49,7 @@ def imported(package):
                 names |= {alias.name.split('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module.split('.')[0])
-    return names - sys.stdlib_module_names - FOR_TESTS - {package.name}
+    return names - sys.stdlib_module_names - OPTIONAL - {package.name}
 
 
 def is_ros(module):

@@ -13,6 +13,7 @@ setup(
     ],
     install_requires=[
         'panda_tray_description', 'shared_control', 'shared_control_ros', 'teleop_key_node', 'rclpy', 'nicegui',
+        'numpy', 'pin',
     ],
     extras_require={'test': ['pytest', 'selenium']},
     zip_safe=False,
