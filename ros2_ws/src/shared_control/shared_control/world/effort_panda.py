@@ -79,7 +79,7 @@ class EffortPanda:
             self._target = command
             self._silent_ticks = 0
         if self._silent_ticks > self._timeout_ticks:
-            self._enter(Mode.IDLE)
+            self.stop()
             return
         torque = self._target
         if self._limit_rate:
@@ -90,6 +90,11 @@ class EffortPanda:
             self._enter(Mode.REFLEX)
         else:
             self.torque = torque
+
+    def stop(self) -> None:
+        """End the control: the brakes hold it."""
+        if self.mode is Mode.MOVE:
+            self._enter(Mode.IDLE)
 
     def recover(self) -> bool:
         """Leave a reflex (libfranka's ``automaticErrorRecovery``); whether there was one."""
@@ -102,5 +107,4 @@ class EffortPanda:
     def reset(self, ball_x: float) -> None:
         """Put arm and ball back (:meth:`BallOnTrayWorld.reset`), as a person would: the control ends."""
         self.world.reset(ball_x)
-        if self.mode is Mode.MOVE:
-            self._enter(Mode.IDLE)
+        self.stop()

@@ -1,0 +1,1 @@
+"""Bridge between a real Panda (panda-python, libfranka) and the graph."""

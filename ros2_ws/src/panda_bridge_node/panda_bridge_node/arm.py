@@ -1,0 +1,94 @@
+"""The arm as panda-python reaches it. Nothing else here knows that library, and it is loaded only when it is needed."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+IDLE = 'kIdle'
+"""libfranka's ``RobotMode`` of an arm that is ready to be moved."""
+
+
+class ArmError(OSError):
+    """The arm cannot be reached; the message says why and what to do."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmState:
+    """What the arm reported last."""
+
+    time_ms: int
+    """Of the arm's own clock."""
+    q: np.ndarray
+    """Joint positions, (7,), rad"""
+    qd: np.ndarray
+    """Joint velocities, (7,), rad/s"""
+    torque: np.ndarray
+    """``tau_J_d``: the torque it was last commanded, without gravity, (7,), N m"""
+    mode: str
+    """Name of libfranka's ``RobotMode``"""
+
+
+class Arm:
+    """A Panda at ``hostname``.
+
+    Raises:
+        ArmError: panda-python is not installed, or the arm does not answer.
+    """
+
+    def __init__(self, hostname: str):
+        try:
+            import panda_py
+            from panda_py import controllers
+        except ImportError as error:
+            raise ArmError(
+                f'panda-python cannot be imported ({error}): pip install panda-python==1.1.1 (with libfranka 0.9.2, '
+                'for the Panda), or use mock_panda_node') from error
+        self._make_controller = controllers.AppliedTorque
+        self._controller: Any = None
+        try:
+            self._panda = panda_py.Panda(hostname)
+        except RuntimeError as error:
+            raise ArmError(f'no Panda at {hostname}: {error}') from error
+
+    def read(self) -> ArmState:
+        """The newest state; while the arm is not under control this waits for the next one, a millisecond."""
+        state = self._panda.get_state()
+        return ArmState(state.time.to_msec(), np.array(state.q), np.array(state.dq), np.array(state.tau_J_d),
+                        state.robot_mode.name)
+
+    def start(self) -> None:
+        """Take the arm under torque control, beginning with zero; panda-python limits torques and their rate.
+
+        Raises:
+            RuntimeError: the arm refuses.
+        """
+        controller = self._make_controller()
+        self._panda.start_controller(controller)
+        self._controller = controller
+
+    def command(self, torque: np.ndarray) -> None:
+        """The torque to apply from now on, (7,), N m, without gravity."""
+        self._controller.set_control(torque)
+
+    def failure(self) -> str:
+        """Why the control has ended by itself; empty while it goes on."""
+        try:
+            self._panda.raise_error()
+        except RuntimeError as error:
+            return str(error)
+        return ''
+
+    def stop(self) -> None:
+        """End the control: the arm holds itself."""
+        if self._controller is not None:
+            self._controller = None
+            self._panda.stop_controller()
+
+    def recover(self) -> None:
+        """Leave a reflex.
+
+        Raises:
+            RuntimeError: the arm refuses.
+        """
+        self._panda.recover()

@@ -1,0 +1,187 @@
+"""Bridge to a real Panda: wires panda-python's torque interface to /joint_states and /effort_controller/commands.
+
+It refuses to move until a person calls ~/enable (SetBool), and ends the control when torques are silent, when the arm
+reports an error and when it leaves. ~/error_recovery (Trigger) leaves a reflex. A skeleton: see docs/real_panda.md.
+"""
+
+import time
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.node import Node
+from shared_control.envs.plant import CONTROL_PERIOD
+from shared_control.robot.limits import DOF
+from shared_control.robot.reflex import command_violation
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background
+from shared_control_ros.joint_state_publisher import JointStatePublisher
+from shared_control_ros.parameters import ParameterError, declare
+from shared_control_ros.robot_inputs import TorqueInput
+from shared_control_ros.runner import Stop, run
+from std_srvs.srv import SetBool, Trigger
+
+from .arm import IDLE, Arm, ArmState
+
+TICKS_PER_POLL = 10
+"""How often services are looked at and throttled joint states go out."""
+POLL_SECONDS = 0.0002
+"""How often the arm's state is looked at while it is under control."""
+CLOCK_DRIFT = 0.05
+"""How far the arm's clock may drift from this machine's before stamps are set anew, s."""
+
+
+class PandaBridgeNode:
+    """See the module."""
+
+    def __init__(self) -> None:
+        self.node = node = Node('panda_bridge_node')
+        hostname = declare(node, 'hostname', '', "The arm's control box: host name or address.")
+        self._timeout = declare(
+            node, 'command_timeout', 0.1, 'Without torques for this long the control ends.', unit='s',
+            minimum=0.01, maximum=1.0)
+        if not hostname:
+            raise ParameterError("parameter 'hostname' is missing: the arm's control box, -p hostname:=172.16.0.2")
+        self._arm = Arm(hostname)
+        self._state = self._arm.read()
+        self._enabled = False
+        self._fault = ''
+        self._command: np.ndarray | None = None
+        self._command_time = 0.0
+        self._joints = JointStatePublisher(node)
+        self._commands = TorqueInput(node)
+        node.create_service(SetBool, '~/enable', self._on_enable)
+        node.create_service(Trigger, '~/error_recovery', self._on_error_recovery)
+        self._background = Background(node)
+        self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+        self._ticks = 0
+        self._set_clock()
+
+    def _set_clock(self) -> None:
+        """Stamps are whole milliseconds of the arm's clock, put beside this machine's."""
+        self._start_ns = round(time.time_ns() / 1e6) * 1_000_000 - self._state.time_ms * 1_000_000
+
+    def _stamp_ns(self) -> int:
+        return self._start_ns + self._state.time_ms * 1_000_000
+
+    def run(self, stop: Stop) -> None:
+        """Pass states and torques on until told to stop."""
+        while not stop.requested:
+            self._hear()
+            state = self._arm.read()
+            if state.time_ms == self._state.time_ms:
+                time.sleep(POLL_SECONDS)
+            else:
+                self._tell(state)
+            if self._enabled:
+                self._watch()
+            if self._diagnostics.due():
+                self._report()
+
+    def _tell(self, state: ArmState) -> None:
+        self._state = state
+        self._joints.publish(self._stamp_ns(), state.q, state.qd, state.torque)
+        self._diagnostics.tick()
+        self._ticks += 1
+        if self._ticks % TICKS_PER_POLL == 0:
+            self._joints.publish_throttled()
+            self._background.poll()
+
+    def _hear(self) -> None:
+        torque = self._commands.take_torque()
+        if torque is None:
+            return
+        self._command, self._command_time = torque, time.monotonic()
+        if self._enabled:
+            self._arm.command(torque)
+
+    def _watch(self) -> None:
+        """End the control when there is reason to."""
+        if fault := self._arm.failure():
+            self._disable()
+            self._fault = f'{fault}; to go on: {self.node.get_fully_qualified_name()}/error_recovery, then ~/enable'
+            self.node.get_logger().error(self._fault)
+            self._report()
+        elif self._silence() > self._timeout:
+            self._disable()
+            self.node.get_logger().warning(
+                f'no torques on {self._commands.topic_name} for {self._timeout} s: disabled, the arm holds itself')
+            self._report()
+
+    def _silence(self) -> float:
+        return time.monotonic() - self._command_time
+
+    def _disable(self) -> None:
+        self._enabled = False
+        self._arm.stop()
+
+    # -- services ----------------------------------------------------------------------------------------------------
+
+    def _obstacle(self) -> str:
+        """What speaks against moving now; empty when nothing does."""
+        if self._state.mode != IDLE:
+            return f'the arm is in mode {self._state.mode}, not {IDLE}'
+        if self._command is None or self._silence() > self._timeout:
+            return f'no torques on {self._commands.topic_name}: enable torque_ctrl_node first'
+        return command_violation(self._command, np.zeros(DOF), CONTROL_PERIOD)
+
+    def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        try:
+            if not request.data:
+                self._disable()
+            elif not self._enabled:
+                if obstacle := self._obstacle():
+                    raise RuntimeError(obstacle)
+                self._arm.start()
+                self._enabled = True
+            response.success = True
+            response.message = 'enabled: the arm moves' if self._enabled else 'disabled: the arm holds itself'
+        except RuntimeError as error:
+            response.success = False
+            response.message = f'not enabled: {error}'
+        self.node.get_logger().warning(response.message)
+        return response
+
+    def _on_error_recovery(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        try:
+            self._disable()
+            self._arm.recover()
+            self._fault = ''
+            response.success = True
+            response.message = 'recovered; still disabled'
+        except RuntimeError as error:
+            response.success = False
+            response.message = str(error)
+        self.node.get_logger().warning(response.message)
+        return response
+
+    # -- output ------------------------------------------------------------------------------------------------------
+
+    def _report(self) -> None:
+        problems = {}
+        if self._fault:
+            problems['robot'] = self._fault
+        elif not self._enabled:
+            problems[self._commands.topic_name] = f'disabled: {self.node.get_fully_qualified_name()}/enable to go on'
+        drift = (time.time_ns() - self._stamp_ns()) * 1e-9
+        if abs(drift) > CLOCK_DRIFT:
+            self.node.get_logger().warning(f"stamps set anew: the arm's clock was {drift:.3f} s off this machine's")
+            self._set_clock()
+        self._diagnostics.publish(
+            problems, level=DiagnosticStatus.ERROR if self._fault else None, mode=self._state.mode,
+            enabled=self._enabled)
+
+    def close(self) -> None:
+        """End the control."""
+        self._disable()
+        self._report()
+        self._joints.flush()
+        self._background.close()
+
+
+def main() -> int:
+    """Entry point."""
+    return run(PandaBridgeNode)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,59 @@
+"""Stands in for panda-python where there is no arm: the few calls that the bridge makes, with their signatures.
+
+Behind them is the Panda of shared_control's world, which steps whenever it is looked at, up to the present.
+``hostname`` "nobody" does not answer.
+"""
+
+import time
+from types import SimpleNamespace
+
+import numpy as np
+from shared_control.world.ball_on_tray import BallOnTrayWorld
+from shared_control.world.effort_panda import EffortPanda, Mode
+
+from . import controllers
+
+__all__ = ['Panda', 'controllers']
+
+MODES = {Mode.IDLE: 'kIdle', Mode.MOVE: 'kMove', Mode.REFLEX: 'kReflex'}
+
+
+class Panda:
+    """As panda_py.Panda."""
+
+    def __init__(self, hostname):
+        if hostname == 'nobody':
+            raise RuntimeError('libfranka: Connection to FCI refused.')
+        self._robot = EffortPanda(BallOnTrayWorld())
+        self._began = time.monotonic()
+        self._ticks = 0
+        self._controller = None
+
+    def _catch_up(self):
+        while self._ticks < (time.monotonic() - self._began) * 1000:
+            self._robot.tick(None if self._controller is None else self._controller.torque)
+            self._ticks += 1
+
+    def get_state(self):
+        if self._controller is None:
+            time.sleep(0.001)  # until the next state comes
+        self._catch_up()
+        q, qd = self._robot.world.joint_state()
+        return SimpleNamespace(
+            time=SimpleNamespace(to_msec=lambda: self._ticks), q=list(q), dq=list(qd),
+            tau_J_d=list(self._robot.torque), robot_mode=SimpleNamespace(name=MODES[self._robot.mode]))
+
+    def start_controller(self, controller):
+        controller.torque = np.zeros(7)
+        self._controller = controller
+
+    def stop_controller(self):
+        self._controller = None
+        self._robot.stop()
+
+    def raise_error(self):
+        if self._robot.mode is Mode.REFLEX:
+            raise RuntimeError(f'libfranka: Move command aborted: motion aborted by reflex! [{self._robot.fault}]')
+
+    def recover(self):
+        self._robot.recover()

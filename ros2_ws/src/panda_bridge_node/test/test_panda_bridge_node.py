@@ -1,0 +1,124 @@
+"""The bridge without an arm: what it refuses, and its wiring.
+
+panda-python is no requirement of this project, and no arm is connected to a test machine: a small stand-in for that
+library (stand_in/) takes its place. Where the real one is installed, its calls are compared with those of the stand-in.
+"""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shared_control.robot.limits import JOINT_NAMES
+from shared_control_ros import contract
+from shared_control_ros.stamps import to_ns
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool, Trigger
+
+STAND_IN = Path(__file__).parent / 'stand_in'
+
+
+@pytest.fixture(scope='class')
+def with_stand_in():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('PYTHONPATH', str(STAND_IN))
+        yield
+
+
+def test_without_the_library_it_says_what_to_install(start_node, tmp_path, monkeypatch):
+    (tmp_path / 'panda_py.py').write_text('raise ImportError("not here")')
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+    node = start_node('panda_bridge_node', hostname='nobody')
+    assert node.process.wait(20) == 2
+    assert 'error: panda-python cannot be imported (not here): pip install panda-python' in node.log()
+    assert 'Traceback' not in node.log()
+
+
+@pytest.mark.parametrize(('hostname', 'said'), [
+    ({}, "error: parameter 'hostname' is missing"),
+    ({'hostname': 'nobody'}, 'error: no Panda at nobody: libfranka: Connection to FCI refused.'),
+])
+def test_without_an_arm_it_says_so(with_stand_in, start_node, hostname, said):
+    node = start_node('panda_bridge_node', **hostname)
+    assert node.process.wait(20) == 2
+    assert said in node.log() and 'Traceback' not in node.log()
+
+
+@pytest.mark.skipif(importlib.util.find_spec('panda_py') is None, reason='pip install panda-python==1.1.1')
+def test_the_stand_in_has_the_calls_of_the_library(monkeypatch):
+    import panda_py
+    with pytest.raises(RuntimeError, match='libfranka'):
+        panda_py.Panda('127.0.0.1')
+    for name in ('get_state', 'start_controller', 'stop_controller', 'raise_error', 'recover'):
+        assert callable(getattr(panda_py.Panda, name))
+    panda_py.controllers.AppliedTorque().set_control(np.zeros(7))
+    for name in ('time', 'q', 'dq', 'tau_J_d', 'robot_mode'):
+        assert hasattr(panda_py.libfranka.RobotState, name)
+    assert {'kIdle', 'kMove', 'kReflex'} <= panda_py.libfranka.RobotMode.__members__.keys()
+    assert callable(panda_py.libfranka.Duration.to_msec)
+
+
+@pytest.fixture(scope='class')
+def states(with_stand_in, start_node, observer):
+    states = observer.listen(contract.JOINT_STATES, depth=10_000)
+    start_node('panda_bridge_node', hostname='here')
+    observer.spin(lambda: len(states) > 100)
+    return states
+
+
+@pytest.fixture(scope='class')
+def commands(states, observer):
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    observer.spin(commands.get_subscription_count)
+    return commands
+
+
+class TestWiring:
+    """The bridge on the stand-in."""
+
+    def enable(self, observer, data=True):
+        return observer.call(SetBool, 'panda_bridge_node/enable', SetBool.Request(data=data))
+
+    def enable_beside(self, observer, commands, torque):
+        """Enable while torques come."""
+        for _ in range(50):
+            commands.publish(Float64MultiArray(data=torque))
+            response = self.enable(observer)
+            if response.success:
+                return
+        pytest.fail(response.message)
+
+    def send(self, observer, commands, torque, until):
+        """Torques again and again."""
+        def sent():
+            commands.publish(Float64MultiArray(data=torque))
+            return until()
+        observer.spin(sent)
+
+    def test_states_are_those_of_the_arm(self, states):
+        assert list(states[-1].name) == list(JOINT_NAMES)
+        stamps = np.array([to_ns(m.header.stamp) for m in states])
+        assert (stamps % 1_000_000 == 0).all() and (np.diff(stamps) > 0).all()
+
+    def test_nothing_moves_before_a_person_enables_it(self, observer, states, commands):
+        refused = self.enable(observer)
+        assert not refused.success and 'enable torque_ctrl_node first' in refused.message
+        count = len(states)
+        self.send(observer, commands, [0.0] * 6 + [0.5], lambda: len(states) > count + 100)
+        assert not any(states[-1].effort)
+
+    def test_enabled_it_applies_torques_until_they_fall_silent(self, observer, states, commands):
+        self.enable_beside(observer, commands, [0.0] * 6 + [0.1])
+        self.send(observer, commands, [0.0] * 6 + [0.1], lambda: states[-1].effort[6] == 0.1)
+        observer.spin(lambda: not any(states[-1].effort), what='silence ends the control')
+
+    def test_a_reflex_ends_the_control_until_recovery(self, observer, states, commands):
+        reports = observer.listen(contract.DIAGNOSTICS)
+        self.enable_beside(observer, commands, [0.0] * 7)
+        self.send(observer, commands, [0.0] * 6 + [50.0],
+                  lambda: any('aborted by reflex' in r.status[0].message for r in reports))
+        refused = self.enable(observer)
+        assert not refused.success and 'kReflex' in refused.message
+        assert observer.call(Trigger, 'panda_bridge_node/error_recovery', Trigger.Request()).success
+        self.enable_beside(observer, commands, [0.0] * 7)
+        assert self.enable(observer, False).success
