@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SRC := ros2_ws/src
 # In the order of their dependencies.
 PACKAGES := panda_tray_description shared_control shared_control_ros panda_sim_node torque_ctrl_node teleop_key_node \
-            mock_panda_node \
+            mock_panda_node panda_bridge_node \
             ppo_agent_node sim_tutor_node session_recorder_node robot_view_node teach_page_node shared_control_bringup
 export OMP_NUM_THREADS := 1
 
