@@ -19,7 +19,7 @@ ROSDEP = {
 PIP = {'pinocchio': 'pin', 'markupsafe': 'jinja2', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
 """Where modules come from that are in no distribution of their name."""
 ROS = {'rclpy', 'launch', 'launch_ros'}
-OPTIONAL = {'pytest', 'panda_py'}
+OPTIONAL = {'pytest', 'selenium', 'panda_py', 'ray'}
 """Imported where they are needed, with a clear message when they are missing."""
 
 
