@@ -1,4 +1,4 @@
-"""The teaching page in a real browser, with a whole session on the live graph behind it."""
+"""The teaching page in a real browser, with a whole session on the live graph behind it, and with a recorded one."""
 
 import re
 import signal
@@ -7,6 +7,7 @@ import sys
 
 import pytest
 from selenium.webdriver.common.keys import Keys
+from shared_control.session.testing import lesson, record
 from shared_control_ros import contract
 from shared_control_ros.processes import leave_with_the_parent
 from teach_page_node.testing import Browser
@@ -171,3 +172,43 @@ class TestASessionOnThePage:
         said, _ = session[0].communicate(timeout=60)
         assert session[0].returncode == 130
         assert 'Stopped before the end' in said and 'Traceback' not in said
+
+
+@pytest.fixture
+def replay(tmp_path):
+    """The address of a replay of two episodes of 6 s."""
+    bag = record([lesson(300, seed=1), lesson(300, seed=2)]).write(tmp_path / 'bag')
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'shared_control', 'replay', str(bag), '--page', '127.0.0.1:0'],
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, preexec_fn=leave_with_the_parent)
+    said = ''
+    while not (found := re.search(r'Watch here: (http://127\S+)', said)):
+        line = process.stdout.readline()
+        assert line, f'the replay ended: {said}'
+        said += line
+    yield found[1]
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=20)
+    assert process.returncode == 130
+
+
+def test_a_recorded_session_plays_on_the_page(replay):
+    browser = Browser()
+    try:
+        browser.open(replay)
+        browser.wait(lambda: browser.text('phase') == 'Teach · episode 1', 'the first episode')
+        assert browser.text('position') == '0:00 / 0:12', 'it waits for whoever watches'
+        browser.script('const s = document.querySelector("[data-part=slider]"); s.value = 8;'
+                       's.dispatchEvent(new Event("input"))')
+        browser.wait(lambda: browser.text('position') == '0:08 / 0:12', 'the slider')
+        browser.wait(lambda: browser.text('phase') == 'Teach · episode 2', 'the second episode')
+        browser.wait(lambda: browser.chart('returns') == [[-100.0]], 'the chart')
+        before = browser.ball_on_screen()
+        browser.part('speed').find_element('css selector', '[value="8"]').click()
+        browser.wait(lambda: browser.script('return teachPage.picture.replay.speed') == 8, 'the speed')
+        browser.type(Keys.SPACE)
+        browser.wait(lambda: browser.text('position') == '0:12 / 0:12', 'the end', timeout=10)
+        assert browser.ball_on_screen() != before
+        assert browser.complaints() == []
+    finally:
+        browser.close()

@@ -142,9 +142,9 @@ _HELP = (
     '<kbd>←</kbd> and <kbd>→</kbd> tip the tray, more with each press; <kbd>space</kbd> lets go.',
     'Correct the robot when it errs, let go when it does well.')
 _REPLAY_HELP = (
-    'A recorded session: move the slider, or press <kbd>space</kbd> to play and to hold.',
+    '<kbd>space</kbd> plays and holds; the slider goes anywhere.',
     '<kbd>←</kbd> and <kbd>→</kbd> go back and on by 5 s.',
-    'The keys that the teacher pressed show as the arrow of <i>you</i>.')
+    'The orange arrow is what the teacher did, the blue one what the robot did.')
 
 _CLOSE_VIEW = """
 <svg viewBox="-240 -60 480 168" data-part="close-view" role="img" aria-label="The tray from the front">

@@ -20,7 +20,7 @@ class ReplayDesk:
         self._recording = recording
         self._position = 0.0
         self._speed = 1.0
-        self._plays = True
+        self._plays = False
         self._looked_at = time.monotonic()
 
     def look(self) -> Picture:

@@ -22,7 +22,7 @@ export function showPicture(picture, isReplay) {
   const isEpisode = phase === "teach" || phase === "test";
   setText("phase", isEpisode && picture.episode !== null ? `${title} · episode ${picture.episode}` : title);
   part("phase").className = `phase ${phase ?? "none"}`;
-  setText("doing", trouble(picture, isReplay) ?? (picture.notice || (isReplay ? "" : doing)));
+  setText("doing", trouble(picture, isReplay) ?? (isReplay ? "A recorded session." : picture.notice || doing));
   part("doing").classList.toggle("trouble", trouble(picture, isReplay) !== null);
 
   const left = isEpisode && picture.time_left !== null ? Math.max(picture.time_left, 0) : null;
@@ -36,7 +36,7 @@ export function showPicture(picture, isReplay) {
     document.querySelector(`[data-key="${name}"]`).classList.toggle("lit", picture.keys[i] === 1);
   }
   setText("pause", picture.paused ? "Go on" : "Pause");
-  document.body.classList.toggle("paused", picture.paused);
+  document.body.classList.toggle("keys-rest", phase !== null && phase !== "practice" && phase !== "teach");
   showButtons();
 }
 
