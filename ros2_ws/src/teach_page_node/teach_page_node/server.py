@@ -19,6 +19,8 @@ from .room import Room
 STATIC = Path(__file__).parent / 'static'
 GONE_AFTER = 5.0
 """A browser that does not answer for this long is gone, s."""
+RECONNECT_WITHIN = 30.0
+"""NiceGUI loads the page anew when its own connection was lost for longer, s; a busy machine must not cause that."""
 
 
 class PageServer:
@@ -66,7 +68,7 @@ class PageServer:
             await self._room.receive(websocket)
 
         ui.run_with(app, root=lambda: build(self._desk.is_replay), title='Teach the robot', tailwind=False, favicon='⚖️',
-                    binding_refresh_interval=None, show_welcome_message=False)
+                    binding_refresh_interval=None, show_welcome_message=False, reconnect_timeout=RECONNECT_WITHIN)
         server = uvicorn.Server(uvicorn.Config(
             Guard(app, self._token), log_level='warning', access_log=False, lifespan='on',
             ws_max_size=65536, ws_per_message_deflate=False, ws_ping_interval=GONE_AFTER, ws_ping_timeout=GONE_AFTER,
