@@ -1,6 +1,6 @@
 """The graph on the mock of a real Panda: the same tests as with the simulator, and what only a robot does.
 
-The mock runs with its jitter and losses, at a quarter of its pace, since a test machine is no real-time machine.
+The mock runs with its jitter and losses, at less than half its pace, since a test machine is no real-time machine.
 """
 
 import numpy as np
@@ -21,10 +21,10 @@ from std_srvs.srv import SetBool, Trigger
 LATE = {'enabled': True, 'prediction_horizon': 0.01}
 ROBOTS = {
     'panda_sim_node': ({'paced': False, 'seed': 3}, {'enabled': True}),
-    'mock_panda_node': ({'pace': 0.25, 'seed': 3}, {**LATE, 'robot_compensates_gravity': True}),
+    'mock_panda_node': ({'pace': 0.4, 'seed': 3}, {**LATE, 'robot_compensates_gravity': True}),
 }
-STEPS = 175
-"""3.5 s: when nobody balances it, the ball lies at the end of the tray by then."""
+STEPS = 150
+"""3 s: when nobody balances it, the ball lies at the end of the tray by then."""
 
 
 def balance(observation):
@@ -109,7 +109,7 @@ class TestEveryRobot:
 
     def test_a_policy_keeps_the_ball_within_all_limits(self, robot):
         error, velocity = robot.balance(STEPS)
-        assert abs(error[0]) > 0.1 and abs(error[-1]) < 0.04 and abs(velocity[-1]) < 0.06
+        assert abs(error[0]) > 0.1 and abs(error[-1]) < 0.06 and abs(velocity[-1]) < 0.08
         assert 'reflex' not in robot.said('mode')
 
         q, qd, torque = (np.array([getattr(m, field) for m in robot.states])
