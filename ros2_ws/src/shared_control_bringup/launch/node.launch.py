@@ -6,8 +6,8 @@ from launch.substitutions import LaunchConfiguration
 from shared_control_bringup.launching import common_arguments, end_with, environment, graph_node, in_namespace
 
 NODES = [
-    'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node', 'sim_tutor_node',
-    'session_recorder_node', 'robot_view_node', 'teach_page_node']
+    'panda_sim_node', 'mock_panda_node', 'panda_bridge_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node',
+    'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'teach_page_node']
 
 
 def generate_launch_description() -> LaunchDescription:
