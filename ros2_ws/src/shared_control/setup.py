@@ -13,7 +13,7 @@ setup(
     ],
     install_requires=[
         'panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
-        'rosbags', 'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
+        'rosbags', 'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm', 'tensorboard',
     ],
     extras_require={'test': ['pytest'], 'ray': ['ray']},
     zip_safe=False,
@@ -24,6 +24,7 @@ setup(
     entry_points={
         'console_scripts': ['shared-control = shared_control.cli:main'],
         'shared_control.commands': [
+            'train = shared_control.learning.command:add_command',
             'evaluate = shared_control.protocols.command:add_command',
             'validate = shared_control.validation.command:add_command',
             'report = shared_control.report.command:add_command',

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import torch
 from shared_control.envs.balance_env import BalanceEnv
-from shared_control.learning.coached_ppo import CoachedPPO, find_corrections
+from shared_control.learning.coached_ppo import CoachedPPO
+from shared_control.learning.corrections import find_corrections
 from shared_control.learning.episode import Episode
 from shared_control.learning.episode_ppo import ACTION_SPACE, OBSERVATION_SPACE, EpisodePPO
 from shared_control.learning.hooks import Hooks
@@ -48,20 +49,53 @@ def test_lambda_fades():
     assert [coaching.weight_in(episode) for episode in range(1, 7)] == [2.0, 1.5, 1.0, 0.5, 0.0, 0.0]
 
 
-def test_corrections_belong_to_the_state_a_delay_before():
-    coaching = CoachingSettings(gain=2.0, delay=0.1)
+def test_corrections_belong_to_the_states_some_delays_before():
+    coaching = CoachingSettings(gain=2.0, delays=(0.1, 0.2))
     episode = Episode()
-    human = [0.0] * 20
-    human[7], human[12], human[3] = 5.0, -1.0, 5.0
-    for step in range(20):
+    human = [0.0] * 40
+    human[12], human[22], human[3], human[39] = 5.0, -1.0, 5.0, 5.0
+    for step in range(40):
         episode.add(np.full(3, step, np.float32), np.zeros(1, np.float32), 0.0, human[step], 0.0)
-    observations, labels = find_corrections(episode, np.full((20, 1), 0.1), coaching, action_scale=8.0)
-    assert observations[:, 0].tolist() == [2.0, 7.0]
-    assert labels[:, 0] == pytest.approx([1.0, 0.1 - 2.0 / 8.0])
+    found = find_corrections(episode, 4, np.full((40, 1), 0.1), coaching, action_scale=8.0)
+    # Step 12 comes 10 after step 2 and 5 after step 7. Of step 34 it is not known what the person made of it.
+    assert found.observations[:, 0].tolist() == [2.0, 7.0, 12.0, 17.0, 29.0]
+    assert found.labels[:, 0].tolist() == pytest.approx([0.55, 0.55, -0.025, -0.025, 0.55])
+    assert found.weights[:, 0].tolist() == [0.5] * 5
+    assert found.episodes[:, 0].tolist() == [4.0] * 5
+
+
+def test_corrections_are_taught_for_some_episodes_and_then_forgotten():
+    learner = make_learner(preset('coached'), 0)
+    learner.start_episode()
+    learner.learn_from(make_episode(learner, m_y_human=[5.0] * 130))
+    remembered = len(learner.corrections)
+    assert remembered > 50
+    for later in (1, 2):
+        learner.learn_from(make_episode(learner))
+        assert len(learner.corrections) == remembered, f'{later} episodes later'
+    learner.learn_from(make_episode(learner))
+    assert len(learner.corrections) == 0
+
+
+def test_exploring_fades_and_its_noise_is_correlated():
+    learner = make_learner(preset('autonomous'), 0)
+    spread, neighbours = [], []
+    for learner.episode in (0, 30):
+        noise = []
+        for _ in range(40):
+            learner.start_episode()
+            seen = np.zeros(3, np.float32)
+            noise.append([float((learner.explore(seen) - learner.act(seen))[0]) for _ in range(50)])
+            learner.set_random_seed(len(noise))
+        noise = np.array(noise)
+        spread.append(noise.std())
+        neighbours.append(np.corrcoef(noise[:, :-1].ravel(), noise[:, 1:].ravel())[0, 1])
+    assert spread[0] > 3 * spread[1]
+    assert min(neighbours) > 0.8
 
 
 def test_without_corrections_coached_ppo_is_ppo():
-    coached, plain = CoachedPPO(preset('coached'), 3), EpisodePPO(preset('autonomous'), 3)
+    coached, plain = CoachedPPO(preset('coached'), 3), EpisodePPO(preset('coached'), 3)
     for learner in (coached, plain):
         learner.start_episode()
         learner.learn_from(make_episode(learner))
@@ -70,7 +104,7 @@ def test_without_corrections_coached_ppo_is_ppo():
 
 def test_own_loss_is_that_of_stable_baselines(monkeypatch):
     """With corrections of weight nearly nothing, the coached epochs do what PPO's own do."""
-    coached, plain = CoachedPPO(preset('coached'), 3), EpisodePPO(preset('autonomous'), 3)
+    coached, plain = CoachedPPO(preset('coached'), 3), EpisodePPO(preset('coached'), 3)
     monkeypatch.setattr(CoachingSettings, 'weight_in', lambda *_: 1e-30)
     for learner in (coached, plain):
         learner.start_episode()

@@ -85,7 +85,7 @@ def change(path, description=lambda d: None, tensors=lambda t: None):
     (lambda d: d.update(format='shared-control policy 99'), 'of this version'),
     (lambda d: d['preset'].update(name='magic'), "no preset 'magic'"),
     (lambda d: d['preset']['ppo'].update(hidden=[100_000]), 'hidden layers'),
-    (lambda d: d['preset']['ppo'].update(hidden=[8, 8]), 'expected torch.float32'),
+    (lambda d: d['preset']['ppo'].update(value_hidden=[8, 8]), 'expected torch.float32'),
     (lambda d: d['preset']['ppo'].update(hidden='wide'), 'hidden'),
     (lambda d: d['preset']['task'].update(action_scale=float('nan')), 'action_scale'),
     (lambda d: d['preset']['task'].pop('action_scale'), 'TaskSettings'),

@@ -8,7 +8,7 @@ from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.local_plant import LocalPlant
 from shared_control.envs.plant import POLICY_PERIOD
 from shared_control.human.keystrokes import Key, KeyMoment
-from shared_control.human.profiles import EXPERT, PROFILES, profile
+from shared_control.human.profiles import EXPERT, PROFILES, in_episode, profile
 from shared_control.human.tutor import TILT_OF_MOMENT, Picture, SimulatedTutor
 
 SHARP_EYED = replace(EXPERT, position_noise=0.0, velocity_noise=0.0, pitch_noise=0.0)
@@ -31,7 +31,7 @@ def presses(tutor, picture_at, seconds=5.0):
 
 
 def test_unknown_profile_is_refused_with_the_names_of_all():
-    with pytest.raises(ValueError, match='expert, high, low, sham'):
+    with pytest.raises(ValueError, match='expert, high, low, adapting, sham'):
         profile('genius')
 
 
@@ -60,6 +60,19 @@ def test_lets_go_of_a_ball_at_rest_in_the_centre():
         keys.press(key)
     assert keys.m_y == 0.0
     assert pressed[-1][0] < 2.0
+
+
+def test_a_ball_that_rests_beside_the_centre_is_not_left_there():
+    tutor = SimulatedTutor(SHARP_EYED, seed=1)
+    slightly_off = Picture(0.02, 0.0, 0.0)
+    assert [key for _, key in presses(tutor, lambda t: slightly_off, seconds=8.0)][:1] == [Key.LEFT]
+
+
+def test_an_adapting_tutor_becomes_an_expert():
+    adapting = profile('adapting')
+    assert in_episode(adapting, 1) == replace(profile('low'), adapts_within=adapting.adapts_within)
+    assert in_episode(adapting, adapting.adapts_within + 1) == adapting
+    assert EXPERT.reaction_time < in_episode(adapting, 3).reaction_time < profile('low').reaction_time
 
 
 def test_sham_does_not_look():

@@ -101,7 +101,7 @@ class SimTutorNode:
         while (message := self._episodes.take()) is not None:
             self._episode = message.data
         if (self._phase, self._episode) != before or stamp_ns < self._stamp_ns:
-            self._tutor.reset(episode_seed(self._seed, self._episode))
+            self._tutor.reset(episode_seed(self._seed, self._episode), self._episode)
             self._started_ns = stamp_ns
         self._stamp_ns = stamp_ns
 

@@ -24,12 +24,14 @@ class BalanceEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     Args:
         plant: in this process (:class:`LocalPlant`) or on the graph.
         settings: the task.
+        human_only: the agent's moment is not applied: the person alone moves the tray (4.7).
     """
 
     metadata: dict[str, Any] = {'render_modes': []}  # noqa: RUF012 - as Gymnasium declares it
 
-    def __init__(self, plant: Plant, settings: TaskSettings = DEFAULT_TASK):
+    def __init__(self, plant: Plant, settings: TaskSettings = DEFAULT_TASK, human_only: bool = False):
         self.plant = plant
+        self._agent_scale = 0.0 if human_only else settings.action_scale
         self.task = BalanceTask(settings)
         self.settings = settings
         self._model = PandaModel()
@@ -48,7 +50,7 @@ class BalanceEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Apply ``action`` for 20 ms."""
-        m_y_agent = float(np.clip(action[0], -1.0, 1.0)) * self.settings.action_scale
+        m_y_agent = float(np.clip(action[0], -1.0, 1.0)) * self._agent_scale
         plant_state = self.plant.advance(m_y_agent)
         self._step += 1
         state = self.describe(plant_state)

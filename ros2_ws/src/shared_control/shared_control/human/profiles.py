@@ -26,21 +26,41 @@ class TutorProfile:
     """Tilt wanted against each m/s of the ball, rad s/m."""
     tolerance: float = 3.0
     """What the robot may lack before the tutor helps, N m."""
+    patience: float = 0.3
+    """How soon a ball that keeps off the centre brings more tilt, rad/(m s)."""
+    generosity: float = 2.0
+    """How many more tolerances the robot may lack once the tutor trusts it."""
+    adapts_within: int = 0
+    """Episodes that the tutor, at first a low performer, needs to become what the rest says (Fig. 20)."""
     watches: bool = True
     """False: presses keys that have nothing to do with the ball."""
 
 
 EXPERT = TutorProfile()
 
+_LOW = replace(
+    EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.03, pitch_noise=0.009)
+
 PROFILES: dict[str, TutorProfile] = {
     'expert': EXPERT,
     'high': replace(
         EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.02, pitch_noise=0.006),
-    'low': replace(
-        EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.03, pitch_noise=0.009),
+    'low': _LOW,
+    'adapting': replace(EXPERT, adapts_within=5),
     'sham': replace(EXPERT, watches=False),
 }
-"""``expert``, ``high`` and ``low`` performer (4.4, 4.5), and ``sham``, whose keys are unrelated to the ball."""
+"""``expert``, ``high`` and ``low`` performer (4.4, 4.5), ``adapting``, a low performer who becomes an expert within
+five episodes (Figs. 20, 21), and ``sham``, whose keys are unrelated to the ball."""
+
+
+def in_episode(profile: TutorProfile, episode: int) -> TutorProfile:
+    """Who the tutor is in ``episode`` (from 1): senses and hands part of the way from a low performer's to its own."""
+    if episode > profile.adapts_within:
+        return profile
+    part = (episode - 1) / profile.adapts_within
+    return replace(profile, **{
+        name: (1.0 - part) * getattr(_LOW, name) + part * getattr(profile, name)
+        for name in ('reaction_time', 'key_rate', 'position_noise', 'velocity_noise', 'pitch_noise')})
 
 
 def profile(name: str) -> TutorProfile:

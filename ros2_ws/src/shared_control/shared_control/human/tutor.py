@@ -9,7 +9,7 @@ import numpy as np
 from ..envs.plant import POLICY_PERIOD, PlantState
 from ..robot.model import PandaModel, pitch
 from .keystrokes import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key, KeyMoment
-from .profiles import TutorProfile
+from .profiles import TutorProfile, in_episode
 
 BALL_ACCELERATION = 5.0 / 7.0 * 9.81
 """Of a ball that rolls without slipping, m/s^2 for each rad of tilt."""
@@ -26,6 +26,9 @@ NOISE_SECONDS = 0.3
 
 TRUST_SECONDS = 3.0
 """How fast a tutor comes to trust the robot, or ceases to, s."""
+
+PATIENCE_TILT_MAX = 0.05
+"""rad: no tutor asks for more because the ball keeps off the centre."""
 
 _STREAM = 1
 """Keeps the tutor's random numbers apart from the ball starts of the same seed."""
@@ -63,7 +66,9 @@ class SimulatedTutor:
 
     How far the tutor thinks ahead is a matter of trust. A robot that tilts the tray as the tutor would have, at the
     moment that the tutor now sees, will go on to do so, and needs no help for what is yet to come. A robot that
-    does not is taken to keep its tilt as it is. So the tutor lets go of a robot that does well.
+    does not is taken to keep its tilt as it is. And who trusts the robot leaves more to it. So the tutor lets go of a
+    robot that does well. A ball that keeps to one side of the centre wears out the tutor's patience: the tilt wanted
+    grows until a press is due, and is forgotten when the ball is on the other side.
 
     As a ``Person`` (:mod:`shared_control.envs.local_plant`) it holds the keys of an environment in process; a node
     calls :meth:`key` and publishes what it returns.
@@ -71,16 +76,28 @@ class SimulatedTutor:
     Args:
         profile: who it is.
         seed: of the errors of perception, and of the keys of who does not watch.
+        episodes: taught before.
     """
 
-    def __init__(self, profile: TutorProfile, seed: int = 0):
-        self.profile = profile
+    def __init__(self, profile: TutorProfile, seed: int = 0, episodes: int = 0):
+        self._profile = profile
+        self._episodes = episodes
         self._model = PandaModel()
         self._keys = KeyMoment()
-        self.reset(seed)
+        self._begin(seed)
 
-    def reset(self, seed: int | None) -> None:
-        """A new episode: no keys held, nothing seen yet, no trust. A ``seed`` begins the random numbers anew."""
+    def reset(self, seed: int | None, episode: int | None = None) -> None:
+        """A new episode: no keys held, nothing seen yet, no trust.
+
+        Args:
+            seed: begins the random numbers anew.
+            episode: which it is, from 1; the next one when not given.
+        """
+        self._episodes = self._episodes + 1 if episode is None else episode
+        self._begin(seed)
+
+    def _begin(self, seed: int | None) -> None:
+        self.profile = in_episode(self._profile, max(self._episodes, 1))
         if seed is not None:
             self._random = np.random.default_rng((seed, _STREAM))
         self._keys.release()
@@ -88,6 +105,7 @@ class SimulatedTutor:
         self._memory: deque[_Memory] = deque()
         self._error = np.zeros(3)
         self._trust = 0.0
+        self._wearing = 0.0
         self._may_press_at = 0.0
 
     def moment(self, state: PlantState) -> float:
@@ -148,16 +166,23 @@ class SimulatedTutor:
         velocity_now = velocity + BALL_ACCELERATION * (tilt + tilt_now) / 2 * lead
         error_now = error - (velocity + velocity_now) / 2 * lead
         ideal_now = self._ideal_tilt(error_now, velocity_now)
-        ideal = self._trust * ideal_then + (1.0 - self._trust) * ideal_now
+        if self._wearing * error <= 0.0:
+            self._wearing = 0.0
+        self._wearing = _bounded(self._wearing + self.profile.patience * error * elapsed, PATIENCE_TILT_MAX)
+        ideal = self._trust * ideal_then + (1.0 - self._trust) * ideal_now + self._wearing
         lacking = (ideal - robot_tilt) / TILT_OF_MOMENT
-        if abs(lacking) < self.profile.tolerance:
+        if abs(lacking) < self.profile.tolerance * (1.0 + self.profile.generosity * self._trust):
             return 0.0
         strokes = max(round(abs(lacking) / KEYSTROKE), 1)
         return math.copysign(min(strokes * KEYSTROKE, HUMAN_MOMENT_LIMIT), lacking)
 
     def _ideal_tilt(self, error: float, velocity: float) -> float:
         tilt = self.profile.stiffness * error - self.profile.damping * velocity
-        return min(max(tilt, -TILT_WANTED_MAX), TILT_WANTED_MAX)
+        return _bounded(tilt, TILT_WANTED_MAX)
+
+
+def _bounded(value: float, limit: float) -> float:
+    return min(max(value, -limit), limit)
 
 
 def _towards(wanted: float, m_y_human: float) -> Key | None:

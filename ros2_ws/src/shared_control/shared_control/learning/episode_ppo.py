@@ -1,5 +1,6 @@
 """Stable-Baselines3's PPO with one update an episode."""
 
+import math
 from typing import Any
 
 import gymnasium
@@ -10,6 +11,7 @@ from stable_baselines3.common.buffers import RolloutBuffer
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.utils import set_random_seed
 
+from ..envs.plant import POLICY_PERIOD
 from ..seeds import episode_seed
 from ..task.balance import OBSERVATION_BOUND
 from .episode import Episode
@@ -41,12 +43,18 @@ class EpisodePPO(PPO):
             n_epochs=settings.epochs, gamma=settings.gamma, gae_lambda=settings.gae_lambda,
             clip_range=settings.clip_range, ent_coef=settings.entropy_weight, vf_coef=settings.value_weight,
             max_grad_norm=settings.max_gradient_norm, seed=seed, device='cpu', _init_setup_model=False,
-            policy_kwargs={'net_arch': list(settings.hidden), 'log_std_init': float(np.log(settings.initial_std))})
+            policy_kwargs={'net_arch': {'pi': list(settings.hidden), 'vf': list(settings.value_hidden)},
+                           'log_std_init': float(np.log(settings.initial_std))})
         self.observation_space = OBSERVATION_SPACE
         self.action_space = ACTION_SPACE
         self.n_envs = 1
         self._setup_model()
         self.set_logger(Logger(None, []))
+        self._kept = math.exp(-POLICY_PERIOD / settings.noise_seconds) if settings.noise_seconds else 0.0
+        """Correlation of the noise from one step to the next."""
+        self._noise = torch.zeros(1)
+        self.lr_schedule = lambda _: settings.learning_rate_in(self.episode + 1)
+        self.policy.log_std.requires_grad_(settings.std_decay is None)
         self.preset = preset
         self.episode = 0
         """Episodes learned from so far."""
@@ -58,12 +66,21 @@ class EpisodePPO(PPO):
     def start_episode(self) -> None:
         """Begin the random numbers of the coming episode."""
         set_random_seed(self.episode_seed())
+        self._noise = torch.randn(1)
+        std = self.preset.ppo.std_in(self.episode + 1)
+        if std is not None:
+            self.policy.log_std.data.fill_(math.log(std))
 
     @torch.no_grad()
     def explore(self, observation: np.ndarray) -> np.ndarray:
-        """An action drawn for ``observation``; (3,) -> (1,), not clipped."""
-        mean = self.means(torch.as_tensor(observation))
-        return (mean + self.policy.log_std.exp() * torch.randn(1)).numpy()
+        """An action drawn for ``observation``; (3,) -> (1,), not clipped.
+
+        Every action is Gaussian, as PPO takes it to be; those that follow each other may be correlated (Hollenstein
+        et al., 2024), since a tray does not heed what changes its sign every 20 ms.
+        """
+        noise = self._noise
+        self._noise = self._kept * noise + math.sqrt(1.0 - self._kept ** 2) * torch.randn(1)
+        return (self.means(torch.as_tensor(observation)) + self.policy.log_std.exp() * noise).numpy()
 
     @torch.no_grad()
     def act(self, observation: np.ndarray) -> np.ndarray:

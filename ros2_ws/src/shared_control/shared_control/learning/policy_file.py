@@ -17,16 +17,20 @@ from safetensors.torch import save
 
 from ..files import write_atomically
 from ..task.settings import TaskSettings
+from .coached_ppo import CoachedPPO
+from .corrections import Corrections
 from .episode_ppo import ACTION_SPACE, OBSERVATION_SPACE, EpisodePPO
 from .learn import make_learner
 from .presets import PRESETS, CoachingSettings, PpoSettings, Preset
 
-FORMAT = 'shared-control policy 1'
+FORMAT = 'shared-control policy 2'
 SUFFIX = '.safetensors'
 SIZE_MAX = 16 * 2**20
 """Bytes; a policy of two layers of 32 takes 40 thousand."""
 HIDDEN_MAX = (4, 1024)
 """Most hidden layers, and most units of one."""
+CORRECTIONS_MAX = 100_000
+"""Most remembered corrections; three episodes have 2,250 at most."""
 _KEY = 'policy'
 Settings = TypeVar('Settings')
 
@@ -41,7 +45,7 @@ def save_policy(learner: EpisodePPO, path: Path) -> None:
         'format': FORMAT, 'preset': dataclasses.asdict(learner.preset), 'seed': learner.seed,
         'episode': learner.episode, 'steps': learner.num_timesteps,
         'observation_space': _describe(OBSERVATION_SPACE), 'action_space': _describe(ACTION_SPACE)}
-    write_atomically(path, save(_tensors(learner), {_KEY: json.dumps(description)}))
+    write_atomically(path, save(_tensors(learner) | _remembered(learner), {_KEY: json.dumps(description)}))
 
 
 def load_policy(path: Path) -> EpisodePPO:
@@ -57,18 +61,23 @@ def load_policy(path: Path) -> EpisodePPO:
             stored = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - not a mapping
     except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
         raise PolicyFileError(f'{path} is no usable policy: {error}') from error
-    expected = _tensors(learner)
-    if stored.keys() != expected.keys():
-        raise PolicyFileError(f'{path} is no usable policy: it should hold the tensors {", ".join(expected)}; '
-                              f'these differ: {", ".join(sorted(stored.keys() ^ expected.keys()))}')
+    expected, remembered = _tensors(learner), _remembered(learner)
+    wanted = expected.keys() | remembered.keys()
+    if stored.keys() != wanted:
+        raise PolicyFileError(f'{path} is no usable policy: it should hold the tensors {", ".join(sorted(wanted))}; '
+                              f'these differ: {", ".join(sorted(stored.keys() ^ wanted))}')
+    rows = min((len(stored[name]) for name in remembered if stored[name].dim()), default=0)
     for name, tensor in stored.items():
-        if tensor.shape != expected[name].shape or tensor.dtype != expected[name].dtype:
-            raise PolicyFileError(
-                f'{path} is no usable policy: {name} is {tensor.dtype} {tuple(tensor.shape)}, '
-                f'expected {expected[name].dtype} {tuple(expected[name].shape)}')
+        like = expected[name] if name in expected else remembered[name].new_empty(rows, remembered[name].shape[1])
+        if tensor.shape != like.shape or tensor.dtype != like.dtype or rows > CORRECTIONS_MAX:
+            raise PolicyFileError(f'{path} is no usable policy: {name} is {tensor.dtype} {tuple(tensor.shape)}, '
+                                  f'expected {like.dtype} {tuple(like.shape)}')
         if not bool(torch.isfinite(tensor).all()):
             raise PolicyFileError(f'{path} is no usable policy: {name} has numbers that are not finite')
-        expected[name].copy_(tensor)
+        if name in expected:
+            expected[name].copy_(tensor)
+    if isinstance(learner, CoachedPPO):
+        learner.corrections = Corrections(*(stored[name] for name in remembered))
     return learner
 
 
@@ -106,8 +115,9 @@ def _learner(description: dict[str, Any]) -> EpisodePPO:
     preset = Preset(
         stored['name'], _settings(TaskSettings, stored['task']), _settings(PpoSettings, stored['ppo']),
         None if stored['coaching'] is None else _settings(CoachingSettings, stored['coaching']))
-    if len(preset.ppo.hidden) > HIDDEN_MAX[0] or any(not 0 < n <= HIDDEN_MAX[1] for n in preset.ppo.hidden):
-        raise ValueError(f'hidden layers {preset.ppo.hidden}; at most {HIDDEN_MAX[0]} of {HIDDEN_MAX[1]} units')
+    for hidden in (preset.ppo.hidden, preset.ppo.value_hidden):
+        if len(hidden) > HIDDEN_MAX[0] or any(not 0 < n <= HIDDEN_MAX[1] for n in hidden):
+            raise ValueError(f'hidden layers {hidden}; at most {HIDDEN_MAX[0]} of {HIDDEN_MAX[1]} units')
     learner = make_learner(preset, _count(description, 'seed'))
     learner.episode = _count(description, 'episode')
     learner.num_timesteps = _count(description, 'steps')
@@ -157,3 +167,11 @@ def _tensors(learner: EpisodePPO) -> dict[str, torch.Tensor]:
         for key in ('step', 'exp_avg', 'exp_avg_sq'):
             tensors[f'adam.{key}.{name}'] = state[key]
     return tensors
+
+
+def _remembered(learner: EpisodePPO) -> dict[str, torch.Tensor]:
+    """The corrections that a coached learner still learns from, by name; as many rows as there are."""
+    if not isinstance(learner, CoachedPPO):
+        return {}
+    return {f'corrections.{f.name}': getattr(learner.corrections, f.name)
+            for f in dataclasses.fields(learner.corrections)}

@@ -21,7 +21,7 @@ class TaskSettings:
     """M_yai of a full action, N m."""
     moment_limit: float = 20.0
     """Bound of |M_yai + M_yh|, N m."""
-    observation_scales: tuple[float, float, float] | None = (0.2, 0.3, 0.1)
+    observation_scales: tuple[float, float, float] | None = (0.1, 0.15, 0.05)
     """What position error (m), velocity (m/s) and pitch (rad) are divided by. None squeezes the three by their own
     minimum and maximum at every step, as the appendix does, which destroys their sign and scale."""
     rewards_high_manipulability: bool = True
