@@ -1,0 +1,184 @@
+"""How many episodes it takes to teach the robot: the table of docs/learning.md.
+
+In process on the PyBullet plant. After every episode the policy is tested alone (20 episodes of 10 s, new starts each
+time); it is skilled at the second test in a row that it passes. Runs with the same seed share ball starts and first
+weights, so conditions are paired. The tutors are simulated, no people take part. A run that is stopped goes on when
+the command is given again.
+
+    python benchmarks/learning.py                              # all conditions but thesis-*, 24 seeds: hours
+    python benchmarks/learning.py --conditions coached-expert --seeds 8
+    python benchmarks/learning.py --retention                  # 20 further episodes without the tutor as well: hours
+"""
+
+import argparse
+import json
+import os
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import bootstrap
+from shared_control.envs.balance_env import BalanceEnv
+from shared_control.envs.local_plant import LocalPlant
+from shared_control.human.profiles import profile
+from shared_control.learning.evaluate import evaluate, passes, test_settings
+from shared_control.learning.hooks import Hooks
+from shared_control.learning.learn import learn
+from shared_control.learning.policy_file import load_policy
+from shared_control.learning.presets import preset
+from shared_control.learning.record import EpisodeRecord
+from shared_control.learning.training import POLICY_NAME, TEST_SEED, train
+from shared_control.seeds import episode_seed
+from tqdm import tqdm
+
+RETENTION_EPISODES = 20
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Who teaches what, for how long."""
+
+    preset: str
+    tutor: str | None = None
+    episodes: int = 20
+    human_only: bool = False
+    evaluate_every: int = 1
+
+
+CONDITIONS = {
+    'coached-expert': Condition('coached', 'expert'),
+    'coached-high': Condition('coached', 'high'),
+    'coached-low': Condition('coached', 'low'),
+    'coached-adapting': Condition('coached', 'adapting'),
+    'coached-sham': Condition('coached', 'sham'),
+    'coached-nobody': Condition('coached'),
+    'autonomous': Condition('autonomous', episodes=40),
+    'thesis-expert': Condition('thesis', 'expert', 800, evaluate_every=5),
+    'thesis-nobody': Condition('thesis', None, 800, evaluate_every=5),
+    'thesis-human-only': Condition('thesis', 'expert', 800, human_only=True, evaluate_every=5),
+}
+BY_DEFAULT = [name for name in CONDITIONS if not name.startswith('thesis')]
+
+
+def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) -> dict[str, Any]:
+    """One run, and what became of its policy."""
+    done = folder / 'result.json'
+    if done.exists():
+        return json.loads(done.read_text())
+    condition = CONDITIONS[name]
+    training = train(
+        preset(condition.preset), None if condition.tutor is None else profile(condition.tutor), seed,
+        min(condition.episodes, limit or condition.episodes), human_only=condition.human_only, folder=folder,
+        evaluate_every=condition.evaluate_every)
+    result = {
+        'seed': seed, 'skilled': training.skilled, 'first_pass': training.first_pass, 'episodes': training.episodes,
+        'intervention_rates': training.intervention_rates, 'seconds': training.seconds,
+        **final_test(folder / POLICY_NAME, seed)}
+    if retention and training.skilled is not None:
+        result['retention'] = retained(folder / POLICY_NAME, seed)
+    done.write_text(json.dumps(result, indent=2) + '\n')
+    return result
+
+
+def final_test(policy: Path, seed: int) -> dict[str, float]:
+    """The randomised test of a policy."""
+    learner = load_policy(policy)
+    env = BalanceEnv(LocalPlant(None, learner.preset.task.moment_limit), test_settings(learner.preset.task))
+    test = evaluate(learner.act, env, seed=TEST_SEED + seed)
+    env.close()
+    return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
+
+
+class _TestEach(Hooks):
+    """Tests after each episode."""
+
+    def __init__(self, learner: Any, env: BalanceEnv, seed: int):
+        self._learner, self._env, self._seed = learner, env, seed
+        self.passed: list[bool] = []
+
+    def episode_learned(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        self.passed.append(passes(self._learner.act, self._env, episode_seed(TEST_SEED + self._seed, record.episode)))
+
+
+def retained(policy: Path, seed: int) -> list[bool]:
+    """Go on learning without the tutor: whether the policy passed after each of these episodes."""
+    learner = load_policy(policy)
+    task = learner.preset.task
+    env, test_env = (BalanceEnv(LocalPlant(None, task.moment_limit), s) for s in (task, test_settings(task)))
+    watch = _TestEach(learner, test_env, seed)
+    learn(learner, env, learner.episode + RETENTION_EPISODES, watch)
+    env.close()
+    test_env.close()
+    return watch.passed
+
+
+def median_with_interval(values: list[float]) -> list[float]:
+    """Median and its 95 % bootstrap interval; runs that never got there count as infinite."""
+    finite = np.where(np.isinf(values), 1e9, values)
+    if len(set(finite)) < 2:
+        low = high = finite[0]
+    else:
+        low, high = bootstrap((finite,), np.median, method='percentile', rng=0).confidence_interval
+    return [float('inf') if v >= 1e8 else float(v) for v in (np.median(finite), low, high)]
+
+
+def describe(name: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """The row of a condition."""
+    skilled = [float('inf') if r['skilled'] is None else float(r['skilled']) for r in runs]
+    position, velocity = ([1e3 * r[key] for r in runs] for key in ('position_error', 'velocity'))
+    row = {
+        'condition': name, 'seeds': len(runs), 'censored': int(np.isinf(skilled).sum()),
+        'episodes_to_skilled': median_with_interval(skilled), 'slowest': max(skilled),
+        'position_error_mm': median_with_interval(position), 'position_error_sd_mm': float(np.std(position)),
+        'velocity_mm_s': median_with_interval(velocity), 'velocity_sd_mm_s': float(np.std(velocity)),
+        'intervention_first': float(np.mean([r['intervention_rates'][0] for r in runs])),
+        'intervention_last': float(np.mean([r['intervention_rates'][-1] for r in runs])),
+        'seconds': median_with_interval([r['seconds'] for r in runs])}
+    if any('retention' in r for r in runs):
+        kept = [all(r['retention']) for r in runs if 'retention' in r]
+        row['retained'] = f'{sum(kept)} of {len(kept)}'
+    return row
+
+
+def tell(row: dict[str, Any]) -> None:
+    """Print a condition."""
+    def interval(key: str) -> str:
+        median, low, high = row[key]
+        return f'{median:.4g} [{low:.4g}, {high:.4g}]'
+
+    print(f'{row["condition"]}: {row["seeds"]} seeds, {row["censored"]} never skilled; episodes to skilled '
+          f'{interval("episodes_to_skilled")}, slowest {row["slowest"]:g}; at the end |position error| '
+          f'{interval("position_error_mm")} mm (SD {row["position_error_sd_mm"]:.2g}), |velocity| '
+          f'{interval("velocity_mm_s")} mm/s (SD {row["velocity_sd_mm_s"]:.2g}); human holds '
+          f'{row["intervention_first"]:.0%} of the first, {row["intervention_last"]:.0%} of the last episode; '
+          f'{interval("seconds")} s' + (f'; keeps it without the tutor: {row["retained"]}' if 'retained' in row else ''),
+          flush=True)
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--conditions', nargs='+', choices=tuple(CONDITIONS), default=BY_DEFAULT)
+    parser.add_argument('--seeds', type=int, default=24)
+    parser.add_argument('--episodes', type=int, help='at most so many, if fewer than the condition has')
+    parser.add_argument('--retention', action='store_true', help='20 further episodes without the tutor')
+    parser.add_argument('--jobs', type=int, default=os.cpu_count(), help='processes')
+    parser.add_argument('--output', type=Path, default=Path('out/learning'))
+    args = parser.parse_args()
+    rows = []
+    with ProcessPoolExecutor(args.jobs) as pool:
+        for name in args.conditions:
+            futures = [pool.submit(run, name, seed, args.output / name / f'{seed:03}', args.episodes, args.retention)
+                       for seed in range(args.seeds)]
+            runs = [future.result() for future in tqdm(futures, desc=name, unit='run', disable=None)]
+            rows.append({**describe(name, runs), 'runs': runs})
+            tell(rows[-1])
+            table = {'tutors': 'simulated', 'conditions': rows}
+            (args.output / 'learning.json').write_text(json.dumps(table, indent=2) + '\n')
+
+
+if __name__ == '__main__':
+    main()
