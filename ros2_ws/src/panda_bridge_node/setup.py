@@ -10,7 +10,7 @@ setup(
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
     ],
-    install_requires=['shared_control', 'shared_control_ros', 'rclpy'],
+    install_requires=['shared_control', 'shared_control_ros', 'rclpy', 'numpy'],
     extras_require={'test': ['pytest'], 'panda': ['panda-python==1.1.1']},
     zip_safe=False,
     maintainer='shared-control maintainers',
