@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from shared_control.envs.plant import PlantInterrupted, PlantState
 from shared_control.robot.posture import Q_REFERENCE
+from shared_control.task.settings import DEFAULT_TASK
 
 
 class FakePlant:
@@ -44,7 +45,8 @@ def fake_plant():
 def good_robot():
     """A policy that tilts the tray as a spring and a damper would."""
     def act(observation):
-        error, velocity, _ = observation * (0.2, 0.3, 0.1)
-        return np.clip([-0.26 + (0.6 * error - 0.45 * velocity) / 0.008 / 8.0], -1, 1)
+        error, velocity, _ = observation * DEFAULT_TASK.observation_scales
+        m_y = -2.1 + (0.6 * error - 0.45 * velocity) / 0.008
+        return np.clip([m_y / DEFAULT_TASK.action_scale], -1, 1)
 
     return act
