@@ -154,8 +154,10 @@ def tell(row: dict[str, Any]) -> None:
           f'{interval("position_error_mm")} mm (SD {row["position_error_sd_mm"]:.2g}), |velocity| '
           f'{interval("velocity_mm_s")} mm/s (SD {row["velocity_sd_mm_s"]:.2g}); human holds '
           f'{row["intervention_first"]:.0%} of the first, {row["intervention_last"]:.0%} of the last episode; '
-          f'{interval("seconds")} s' + (f'; keeps it without the tutor: {row["retained"]}' if 'retained' in row else ''),
-          flush=True)
+          f'{interval("seconds")} s', flush=True)
+    if 'retained' in row:
+        print(f'{"":{len(row["condition"])}}  keeps it for {RETENTION_EPISODES} episodes without the tutor: '
+              f'{row["retained"]}', flush=True)
 
 
 def main() -> None:

@@ -25,7 +25,7 @@ class TutorProfile:
     damping: float = 0.45
     """Tilt wanted against each m/s of the ball, rad s/m."""
     tolerance: float = 3.0
-    """What the robot may lack before the tutor helps, N m."""
+    """What the robot may lack before the tutor helps, N m. Who sees less exactly notices less."""
     patience: float = 0.3
     """How soon a ball that keeps off the centre brings more tilt, rad/(m s)."""
     generosity: float = 2.0
@@ -39,12 +39,14 @@ class TutorProfile:
 EXPERT = TutorProfile()
 
 _LOW = replace(
-    EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.03, pitch_noise=0.009)
+    EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.03, pitch_noise=0.009,
+    tolerance=5.0)
 
 PROFILES: dict[str, TutorProfile] = {
     'expert': EXPERT,
     'high': replace(
-        EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.02, pitch_noise=0.006),
+        EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.02, pitch_noise=0.006,
+        tolerance=4.0),
     'low': _LOW,
     'adapting': replace(EXPERT, adapts_within=5),
     'sham': replace(EXPERT, watches=False),
@@ -60,7 +62,7 @@ def in_episode(profile: TutorProfile, episode: int) -> TutorProfile:
     part = (episode - 1) / profile.adapts_within
     return replace(profile, **{
         name: (1.0 - part) * getattr(_LOW, name) + part * getattr(profile, name)
-        for name in ('reaction_time', 'key_rate', 'position_noise', 'velocity_noise', 'pitch_noise')})
+        for name in ('reaction_time', 'key_rate', 'position_noise', 'velocity_noise', 'pitch_noise', 'tolerance')})
 
 
 def profile(name: str) -> TutorProfile:
