@@ -55,11 +55,11 @@ class RunResult:
 
 def save_result(result: RunResult, folder: Path) -> None:
     """Keep a result. ``result.json`` comes last and as a whole: a run that has one is done."""
-    tracks = {f'{name}/{track}': getattr(test, track).astype(np.float32)
-              for name, test in result.tests.items() for track in ('seconds', *TRACKS)}
-    fallen = {f'{name}/fallen': test.fallen for name, test in result.tests.items()}
+    arrays: dict[str, Any] = {f'{name}/{track}': getattr(test, track).astype(np.float32)
+                              for name, test in result.tests.items() for track in ('seconds', *TRACKS)}
+    arrays |= {f'{name}/fallen': test.fallen for name, test in result.tests.items()}
     packed = io.BytesIO()
-    np.savez_compressed(packed, **tracks, **fallen)
+    np.savez_compressed(packed, **arrays)
     write_atomically(folder / TESTS, packed.getvalue())
     content = {f.name: getattr(result, f.name) for f in fields(result) if f.name != 'tests'}
     write_atomically(folder / RESULT, (json.dumps(content, indent=1, allow_nan=False) + '\n').encode())
