@@ -3,26 +3,27 @@
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from shared_control.robot.limits import DOF, JOINT_NAMES
 
 from . import contract
-from .stamps import set_ns
+from .serialized import set_stamp
+from .wire import WireLayout
 
 
 class JointStatePublisher:
     """Publishes /joint_states and, when asked, the same as /joint_states_throttle.
 
-    The message is made once and filled in again and again.
+    The bytes of the message are made once and filled in again and again.
     """
 
     def __init__(self, node: Node) -> None:
-        self._joints = JointState(
-            name=list(JOINT_NAMES), position=[0.0] * DOF, velocity=[0.0] * DOF, effort=[0.0] * DOF)
-        self._joints.header.frame_id = contract.BASE_FRAME
-        self._position = np.frombuffer(self._joints.position)
-        self._velocity = np.frombuffer(self._joints.velocity)
-        self._effort = np.frombuffer(self._joints.effort)
+        message = JointState(name=list(JOINT_NAMES), position=[0.0] * DOF, velocity=[0.0] * DOF, effort=[0.0] * DOF)
+        message.header.frame_id = contract.BASE_FRAME
+        self._data = bytearray(serialize_message(message))
+        self._position, self._velocity, self._effort = WireLayout(
+            message, ('position', 'velocity', 'effort')).views(self._data)
         self._publisher = node.create_publisher(
             contract.JOINT_STATES.msg_type, contract.JOINT_STATES.name, contract.JOINT_STATES.qos)
         self._throttled_publisher = node.create_publisher(
@@ -31,15 +32,15 @@ class JointStatePublisher:
 
     def publish(self, stamp_ns: int, position: np.ndarray, velocity: np.ndarray, effort: np.ndarray) -> None:
         """Publish positions (rad), velocities (rad/s) and the torques that were commanded last (N m), each (7,)."""
-        set_ns(self._joints.header.stamp, stamp_ns)
+        set_stamp(self._data, stamp_ns)
         self._position[:] = position
         self._velocity[:] = velocity
         self._effort[:] = effort
-        self._publisher.publish(self._joints)
+        self._publisher.publish(bytes(self._data))
 
     def publish_throttled(self) -> None:
         """Publish the last one once more, for those who need few of them."""
-        self._throttled_publisher.publish(self._joints)
+        self._throttled_publisher.publish(bytes(self._data))
 
     def flush(self) -> None:
         """Wait a moment until everybody has what was sent: a recorder may lag behind."""

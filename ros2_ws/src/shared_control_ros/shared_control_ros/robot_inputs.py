@@ -10,23 +10,32 @@ from std_msgs.msg import Float64MultiArray
 
 from . import contract
 from .fast_loop import Polled
+from .wire import WireLayout, read_message
 
 
 class TorqueInput(Polled):
     """Joint torques on /effort_controller/commands; unusable ones are refused with an error."""
 
     def __init__(self, node: Node):
-        super().__init__(node, contract.EFFORT_COMMANDS)
+        super().__init__(node, contract.EFFORT_COMMANDS, raw=True)
+        self._layout = WireLayout(Float64MultiArray(data=[0.0] * DOF), ('data',))
 
-    def read(self, message: Float64MultiArray) -> np.ndarray | None:
-        """Torques of a command, (7,), N m; None when it is unusable."""
-        torque = np.array(message.data)
+    def read(self, data: bytes) -> np.ndarray | None:
+        """Torques of a serialized command, (7,), N m; None when it is unusable."""
+        try:
+            torque = self._layout.views(data)[0] if self._layout.fits(data) else np.array(
+                read_message(data, Float64MultiArray).data)
+        except ValueError as error:
+            self._refuse(str(error))
+            return None
         if torque.shape == (DOF,) and math.isfinite(torque.sum()):
             return torque
-        self._node.get_logger().error(
-            f'dropped a message on {self.topic_name}: expected {DOF} finite torques, got '
-            f'{list(message.data)[:10]}', throttle_duration_sec=1.0)
+        self._refuse(f'expected {DOF} finite torques, got {torque[:10].tolist()}')
         return None
+
+    def _refuse(self, fault: str) -> None:
+        self._node.get_logger().error(
+            f'dropped a message on {self.topic_name}: {fault}', throttle_duration_sec=1.0)
 
     def take_torque(self) -> np.ndarray | None:
         """The newest usable torques that wait, (7,), N m."""

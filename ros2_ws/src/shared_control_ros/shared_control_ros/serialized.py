@@ -5,9 +5,20 @@ import struct
 _STAMP = struct.Struct('<iI')
 _STAMP_AT = 4
 """After the encapsulation header of CDR."""
+STAMP_BYTES = slice(_STAMP_AT, _STAMP_AT + _STAMP.size)
+"""Where the stamp lies in a message whose first field is a Header."""
 
 
-def stamp_of(serialized: bytes) -> int:
-    """Stamp of a serialized message whose first field is a Header, ns."""
+def stamp_of(serialized: bytes | bytearray) -> int:
+    """Stamp of a serialized message whose first field is a Header, ns.
+
+    Raises:
+        struct.error: there are not enough bytes.
+    """
     seconds, nanoseconds = _STAMP.unpack_from(serialized, _STAMP_AT)
     return seconds * 1_000_000_000 + nanoseconds
+
+
+def set_stamp(serialized: bytearray, stamp_ns: int) -> None:
+    """Write the stamp of a serialized message whose first field is a Header."""
+    _STAMP.pack_into(serialized, _STAMP_AT, *divmod(stamp_ns, 1_000_000_000))

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
-from rclpy.serialization import serialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control_ros.joints import joint_positions
-from shared_control_ros.serialized import stamp_of
+from shared_control_ros.serialized import set_stamp, stamp_of
 from shared_control_ros.stamps import set_ns
+from shared_control_ros.wire import WireLayout, read_message
 
 
 def test_joints_are_found_by_name():
@@ -33,3 +34,34 @@ def test_stamp_of_a_serialized_message(kind, stamp_ns):
     message = kind()
     set_ns(message.header.stamp, stamp_ns)
     assert stamp_of(serialize_message(message)) == stamp_ns
+
+
+STATE = JointState(name=list(JOINT_NAMES), position=[1.0] * 7, velocity=[2.0] * 7, effort=[3.0] * 7)
+
+
+def test_what_is_filled_into_the_bytes_is_in_the_message():
+    data = bytearray(serialize_message(STATE))
+    effort, position = WireLayout(STATE, ('effort', 'position')).views(data)
+    effort[:], position[:] = range(7), np.arange(7) / 3
+    set_stamp(data, 1_795_355_809_720_131_249)
+    expected = JointState(
+        header=STATE.header, name=STATE.name, position=(np.arange(7) / 3).tolist(), velocity=[2.0] * 7,
+        effort=[float(i) for i in range(7)])
+    set_ns(expected.header.stamp, 1_795_355_809_720_131_249)
+    assert deserialize_message(bytes(data), JointState) == expected
+
+
+def test_a_layout_fits_other_numbers_and_nothing_else():
+    layout = WireLayout(STATE, ('position', 'velocity', 'effort'))
+    other = JointState(name=list(JOINT_NAMES), position=[np.nan] * 7, velocity=[0.0] * 7, effort=[-1.0] * 7)
+    set_ns(other.header.stamp, 5)
+    assert layout.fits(serialize_message(other))
+    for change in ({'name': list(JOINT_NAMES[::-1])}, {'position': [0.0] * 6, 'velocity': [0.0] * 8}, {'effort': []}):
+        fields = {'name': other.name, 'position': other.position, 'velocity': other.velocity, 'effort': other.effort}
+        assert not layout.fits(serialize_message(JointState(**{**fields, **change})))
+    assert not layout.fits(b'')
+
+
+def test_bytes_that_are_no_message_are_refused():
+    with pytest.raises(ValueError, match='no JointState'):
+        read_message(serialize_message(STATE)[:40], JointState)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from shared_control.robot.limits import JOINT_NAMES
 from torque_ctrl_node.joint_states import JointStateReader
@@ -13,18 +14,29 @@ def message(names=JOINT_NAMES, position=None):
     return JointState(name=list(names), position=position, velocity=[0.1] * count, effort=[0.2] * count)
 
 
+def data(*arguments):
+    return serialize_message(message(*arguments))
+
+
 def test_order_follows_the_names_not_the_indices():
     reader = JointStateReader()
-    q, _, _ = reader.read(message(('finger', *reversed(JOINT_NAMES))))
+    q, _, _ = reader.read(data(('finger', *reversed(JOINT_NAMES))))
     np.testing.assert_array_equal(q, [7, 6, 5, 4, 3, 2, 1])
-    np.testing.assert_array_equal(reader.read(message())[0], range(7))
+    for _ in range(2):  # as any, and as it is known to be laid out
+        np.testing.assert_array_equal(reader.read(data())[0], range(7))
+    np.testing.assert_array_equal(reader.read(data(JOINT_NAMES[::-1]))[0], range(6, -1, -1))
 
 
 @pytest.mark.parametrize(('bad', 'named'), [
-    (message(JOINT_NAMES[:6]), 'panda_joint7'),
-    (message(position=[0.0] * 5), 'position has 5 values'),
-    (message(position=[0.0] * 6 + [float('nan')]), 'not finite'),
+    (data(JOINT_NAMES[:6]), 'panda_joint7'),
+    (data(JOINT_NAMES, [0.0] * 5), 'position has 5 values'),
+    (data(JOINT_NAMES, [0.0] * 6 + [float('nan')]), 'not finite'),
+    (data()[:60], 'no JointState'),
+    (b'', 'no JointState'),
 ])
 def test_what_is_missing_is_named(bad, named):
-    with pytest.raises(ValueError, match=named):
-        JointStateReader().read(bad)
+    reader = JointStateReader()
+    for _ in range(2):
+        with pytest.raises(ValueError, match=named):
+            reader.read(bad)
+        reader.read(data())

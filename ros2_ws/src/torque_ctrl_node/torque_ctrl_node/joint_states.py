@@ -5,40 +5,49 @@ import math
 import numpy as np
 from sensor_msgs.msg import JointState
 from shared_control.robot.limits import JOINT_NAMES
+from shared_control_ros.wire import WireLayout, read_message
+
+FIELDS = ('position', 'velocity', 'effort')
 
 
 class JointStateReader:
-    """Picks ``panda_joint1..7`` out of a JointState by name, whatever their order."""
+    """Picks ``panda_joint1..7`` out of serialized joint states by name, whatever their order.
+
+    States that name just these joints in this order are read as the first such one was laid out.
+    """
 
     def __init__(self) -> None:
-        self._names: list[str] = []
-        self._order: np.ndarray | None = None
+        self._layout: WireLayout | None = None
 
-    def read(self, message: JointState) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def read(self, data: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions (rad), velocities (rad/s) and efforts (N m), each (7,).
 
         Raises:
-            ValueError: a joint or a value is missing, or a value is not finite; the message says which.
+            ValueError: it is no JointState, a joint or a value is missing, or a value is not finite; the message says
+                which.
         """
-        if message.name != self._names:
-            self._order = self._find(message.name)
-            self._names = list(message.name)
-        count = len(self._names)
-        fields = []
-        for name, values in (('position', message.position), ('velocity', message.velocity),
-                             ('effort', message.effort)):
-            if len(values) != count:
-                raise ValueError(f'{name} has {len(values)} values for {count} joints')
-            fields.append(np.array(values) if self._order is None else np.array(values)[self._order])
-        q, qd, effort = fields
+        if self._layout is not None and self._layout.fits(data):
+            q, qd, effort = (view.copy() for view in self._layout.views(data))
+        else:
+            q, qd, effort = self._read_any(data)
         if not math.isfinite(q.sum() + qd.sum() + effort.sum()):
             raise ValueError(f'values that are not finite: position {q}, velocity {qd}, effort {effort}')
         return q, qd, effort
 
+    def _read_any(self, data: bytes) -> tuple[np.ndarray, ...]:
+        message = read_message(data, JointState)
+        order = self._find(message.name)
+        count = len(message.name)
+        for name in FIELDS:
+            if len(getattr(message, name)) != count:
+                raise ValueError(f'{name} has {len(getattr(message, name))} values for {count} joints')
+        if list(message.name) == list(JOINT_NAMES):
+            self._layout = WireLayout(message, FIELDS)
+        return tuple(np.array(getattr(message, name))[order] for name in FIELDS)
+
     @staticmethod
-    def _find(names: list[str]) -> np.ndarray | None:
+    def _find(names: list[str]) -> list[int]:
         missing = [name for name in JOINT_NAMES if name not in names]
         if missing:
             raise ValueError(f'no joint {missing[0]!r} among {list(names)}')
-        order = np.array([names.index(name) for name in JOINT_NAMES])
-        return None if list(names) == list(JOINT_NAMES) else order
+        return [names.index(name) for name in JOINT_NAMES]

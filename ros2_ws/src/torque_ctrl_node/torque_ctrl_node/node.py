@@ -10,6 +10,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
+from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
 from shared_control.envs.plant import CONTROL_PERIOD, POLICY_PERIOD
@@ -21,7 +22,9 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
-from shared_control_ros.stamps import to_ns
+from shared_control_ros.serialized import stamp_of
+from shared_control_ros.stamps import set_ns
+from shared_control_ros.wire import WireLayout
 from std_msgs.msg import Float64MultiArray
 
 from .joint_states import JointStateReader
@@ -57,15 +60,16 @@ class TorqueCtrlNode:
         self._controller = ComputedTorqueController(
             PandaModel(), GAINS[gains], CONTROL_PERIOD, horizon, robot_compensates_gravity=compensates)
         self._reader = JointStateReader()
-        self._joint_states = Polled(node, contract.JOINT_STATES)
+        self._joint_states = Polled(node, contract.JOINT_STATES, raw=True)
         self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)
         self._agent = WrenchInput(node, contract.AGENT_WRENCH, self._timeout)
         sources = {'human': self._human, 'agent': self._agent}
         self._awaited = [source for name, source in sources.items() if name in wait_for]
         self._policy_period_ns = round(POLICY_PERIOD * 1e9)
 
-        self._command = Float64MultiArray(data=np.zeros(DOF).tolist())
-        self._torque = np.frombuffer(self._command.data)
+        command = Float64MultiArray(data=[0.0] * DOF)
+        self._command = bytearray(serialize_message(command))
+        self._torque, = WireLayout(command, ('data',)).views(self._command)
         self._applied = WrenchStamped()
         self._applied.header.frame_id = contract.BASE_FRAME
         self._command_publisher = node.create_publisher(
@@ -93,10 +97,8 @@ class TorqueCtrlNode:
             if message is None:
                 self._serve()
                 self._diagnostics.skip()
-            elif not self._safety.enabled:
-                self._stand_by(message)
-            elif not self._is_leftover(to_ns(message.header.stamp)):
-                self._answer(message, stop)
+            else:
+                self._hear(message, stop)
             self._ticks += 1
             if self._ticks % TICKS_PER_POLL == 0:
                 self._serve()
@@ -112,13 +114,20 @@ class TorqueCtrlNode:
         self._repetitions = self._repetitions + 1 if stamp_ns == self._answered_ns else 0
         return self._repetitions == 1
 
-    def _answer(self, message: contract.JointState, stop: Stop) -> None:
-        now_ns = to_ns(message.header.stamp)
+    def _hear(self, message: bytes, stop: Stop) -> None:
         try:
-            q, qd, effort = self._reader.read(message)
+            state = self._reader.read(message)
         except ValueError as error:
-            self._refuse(error)
+            self.node.get_logger().error(
+                f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
             return
+        now_ns = stamp_of(message)
+        if not self._safety.enabled:
+            self._stand_by(now_ns, *state)
+        elif not self._is_leftover(now_ns):
+            self._answer(now_ns, *state, stop)
+
+    def _answer(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray, stop: Stop) -> None:
         if self._awaited and now_ns % self._policy_period_ns == 0:
             self._wait_for_sources(now_ns, stop)
             if not self._safety.enabled:
@@ -127,32 +136,23 @@ class TorqueCtrlNode:
         self._agent.update(now_ns)
         m_y = sum_moments(self._agent.moment(now_ns), self._human.moment(now_ns), self._moment_limit)
         self._torque[:] = self._controller.torque(q, qd, effort, m_y)
-        self._command_publisher.publish(self._command)
+        self._command_publisher.publish(bytes(self._command))
         self._answered_ns = now_ns
         self._diagnostics.tick()
         applied = self._applied
         if m_y != applied.wrench.torque.y or self._ticks % TICKS_PER_POLL == 0:
-            applied.header.stamp = message.header.stamp
+            set_ns(applied.header.stamp, now_ns)
             applied.wrench.torque.y = m_y
             self._applied_publisher.publish(applied)
 
-    def _stand_by(self, message: contract.JointState) -> None:
+    def _stand_by(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> None:
         """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""
-        try:
-            q, qd, effort = self._reader.read(message)
-        except ValueError as error:
-            self._refuse(error)
-            return
         self._safety.see(q)
-        if self._safety.stopping_ticks and not self._is_leftover(to_ns(message.header.stamp)):
+        if self._safety.stopping_ticks and not self._is_leftover(now_ns):
             self._safety.stopping_ticks -= 1
             self._torque[:] = self._controller.damping_torque(q, qd, effort)
-            self._command_publisher.publish(self._command)
-            self._answered_ns = to_ns(message.header.stamp)
-
-    def _refuse(self, error: ValueError) -> None:
-        self.node.get_logger().error(
-            f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
+            self._command_publisher.publish(bytes(self._command))
+            self._answered_ns = now_ns
 
     def _wait_for_sources(self, now_ns: int, stop: Stop) -> None:
         for source in self._awaited:
