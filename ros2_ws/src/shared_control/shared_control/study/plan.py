@@ -208,8 +208,8 @@ def _named(section: dict[str, Any], key: str) -> dict[str, Any]:
 
 
 def _number(section: dict[str, Any], key: str, kind: type, minimum: float, default: Any = None) -> Any:
-    value: Any = section.get(key, default)
-    allowed = (int, float) if kind is float else (kind,)
+    value = section.get(key, default)
+    allowed = (int, float) if kind is float else (int,)
     if isinstance(value, bool) or not isinstance(value, allowed) or not minimum <= value < 2**31:
         raise PlanError(f'{key} is {value!r}, expected {"a whole number" if kind is int else "a number"} '
                         f'of at least {minimum:g}')
