@@ -119,6 +119,22 @@ def test_a_silent_source_fades(tmp_path):
     assert findings(recording, tmp_path / 'latched')
 
 
+@pytest.mark.parametrize(('late_ms', 'is_explained'), [(180, True), (20, False)])
+def test_a_source_that_comes_too_late_is_refused(tmp_path, late_ms, is_explained):
+    """The human's messages from 1 s on are too old when they come; the moment fades as that of a silent source."""
+    steady = made.lesson(60)
+    steady.m_y_human[:], steady.m_y_agent[:] = 5.0, 1.0
+    recording = made.record([steady])
+    last = made.START_NS + 980 * MS
+    recording.messages = [
+        (topic, ns + late_ms * MS * (topic == topics.HUMAN_WRENCH and ns > last + 10 * MS), content)
+        for topic, ns, content in recording.messages]
+    for sent in recording.of(topics.APPLIED_WRENCH):
+        age = (sent.header.stamp.sec * 1_000_000_000 + sent.header.stamp.nanosec - last) * 1e-9
+        sent.wrench.torque.y = 1.0 + 5.0 * np.clip(1.0 - (age - 0.1) / 0.1, 0.0, 1.0)
+    assert (findings(recording, tmp_path) == []) == is_explained
+
+
 def test_messages_that_the_controller_drops(recording, tmp_path):
     for tick, fault in ((1105, made.wrench(made.START_NS + 1105 * MS, np.nan)),
                         (1205, made.wrench(made.START_NS + 1205 * MS, 9.0, frame='world')),

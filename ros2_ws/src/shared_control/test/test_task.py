@@ -12,7 +12,7 @@ STATE = BalanceState(position_error=0.1, ball_velocity=-0.15, pitch=0.05, ball_h
 
 
 def test_default_observation_keeps_sign_and_scale():
-    np.testing.assert_allclose(BalanceTask().observation(STATE), [0.5, -0.5, 0.5], rtol=1e-6)
+    np.testing.assert_allclose(BalanceTask().observation(STATE), [1.0, -1.0, 1.0], rtol=1e-6)
 
 
 def test_thesis_observation_is_squeezed_by_its_own_extremes():

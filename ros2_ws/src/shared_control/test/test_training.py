@@ -35,7 +35,7 @@ def test_a_run_that_was_killed_ends_as_one_that_was_not(tmp_path):
     for episode in (2, 3):
         with pytest.raises(Killed):
             train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, hooks=KillIn(episode))
-    run = train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0)
+    run = train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, tensorboard=True)
     whole, parts = ((tmp_path / name / 'policy.safetensors').read_bytes() for name in ('whole', 'parts'))
     assert whole == parts
     assert run.returns == read_run(tmp_path / 'whole').returns

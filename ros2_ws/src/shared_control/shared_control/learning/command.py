@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
             result = train(
                 chosen, None if tutor == 'none' else profile(tutor), args.seed, args.episodes,
-                until_skilled=args.until_skilled, human_only=args.human_only, folder=args.output,
+                until_skilled=args.until_skilled, human_only=args.human_only, folder=args.output, tensorboard=True,
                 evaluate_every=args.evaluate_every, hooks=_Bar(bar, args.output))
     except KeyboardInterrupt:
         print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)

@@ -73,8 +73,8 @@ class TrainingRun:
 
 
 def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, *, until_skilled: bool = True,
-          human_only: bool = False, folder: Path | None = None, evaluate_every: int = 1,
-          hooks: Hooks | None = None) -> TrainingRun:
+          human_only: bool = False, folder: Path | None = None, tensorboard: bool = False,
+          evaluate_every: int = 1, hooks: Hooks | None = None) -> TrainingRun:
     """Teach a policy in this process, by a simulated tutor or by nobody.
 
     A run that was stopped goes on from its folder, and ends as if it had never stopped.
@@ -86,7 +86,8 @@ def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, 
         episodes: at most so many, those of an earlier part of the run included.
         until_skilled: stop when the policy has passed two tests in a row.
         human_only: the agent's moment is not applied (4.7).
-        folder: for policy, table, run and TensorBoard logs; nothing is kept when None.
+        folder: for policy, table and run; nothing is kept when None.
+        tensorboard: write logs for TensorBoard there, too.
         evaluate_every: test after so many episodes each, 0: never.
         hooks: are told of the episodes, each after its test.
 
@@ -98,6 +99,8 @@ def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, 
     learner = make_learner(preset, seed)
     if folder is not None:
         learner, run = _resumed(learner, run, folder)
+        if tensorboard:
+            learner.set_logger(configure(str(folder / TENSORBOARD_NAME), ['tensorboard']))
     person = None if tutor is None else SimulatedTutor(tutor, seed, learner.episode)
     env = BalanceEnv(LocalPlant(person, preset.task.moment_limit), preset.task, human_only)
     test_env = BalanceEnv(LocalPlant(None, preset.task.moment_limit), test_settings(preset.task))
@@ -153,7 +156,6 @@ class _Keeper(Hooks):
         self._started = time.monotonic() - run.seconds
         if folder is not None:
             self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)
-            learner.set_logger(configure(str(folder / TENSORBOARD_NAME), ['tensorboard']))
 
     def stop(self) -> bool:
         """See :class:`Hooks`."""

@@ -26,6 +26,9 @@ SILENCE = 0.2
 """A node that said nothing for this long (of the recorder's clock) may have been started anew, s."""
 JOINING = 0.5
 """For this long the controller may hear a node that has just started before the recorder does, s."""
+LATE = 0.05
+"""s: a message that reached the recorder no sooner than this before it would have been too old may have come too late
+for the controller, which then refused it."""
 TOLERANCE = 1e-9
 """N m"""
 _NONE = -1
@@ -89,14 +92,20 @@ class _Source:
         # By stamp, so that one that is wrong by far, which the controller drops, stands where it disturbs nobody.
         order = np.flatnonzero(usable)[np.argsort(wrenches.stamp_ns[usable], kind='stable')]
         self._m_y = wrenches.m_y[order].tolist()
+        too_old_at = np.append(bag.applied.received_ns, 2**63 - 1)[
+            np.searchsorted(bag.applied.stamp_ns, wrenches.stamp_ns[order] + round(timeout * 1e9))]
+        self._maybe_refused = (wrenches.received_ns[order] > too_old_at - round(LATE * 1e9)).tolist()
         self._stamps_ns = wrenches.stamp_ns[order].tolist()
 
     def candidates(self, now_ns: int, settling: bool) -> tuple[list[int], list[float]]:
         """Indices of messages, and the moment that each amounts to at ``now_ns``, N m.
 
-        The oldest is the newest that is too old to be accepted now: it may still be the last one that was.
+        The oldest is the newest that is too old to be accepted now: it may still be the last one that was. If it came
+        too late for that, those before it are in question.
         """
         first = bisect_right(self._stamps_ns, now_ns - round(self._timeout * 1e9)) - 1
+        while first > 0 and self._maybe_refused[first]:
+            first -= 1
         end = bisect_right(self._stamps_ns, now_ns + round(AHEAD * 1e9))
         indices = list(range(max(first, 0), end))
         moments = [self._m_y[index] * freshness((now_ns - self._stamps_ns[index]) * 1e-9, self._timeout)
