@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 import pytest
+from shared_control.learning.episode_table import read_rows
 from shared_control_bringup import parameters
 from shared_control_ros.processes import leave_with_the_parent
 from shared_control_ros.testing import *  # noqa: F403
@@ -38,7 +39,7 @@ class Session:
                 return int(child)
         return 0
 
-    def output(self, timeout: float = 150.0) -> str:
+    def output(self, timeout: float = 300.0) -> str:
         """Wait for its end; what it said."""
         return self.process.communicate(timeout=timeout)[0]
 
@@ -77,7 +78,7 @@ class TerminalSession(Session):
     def type(self, keys: bytes) -> None:
         os.write(self._master, keys)
 
-    def expect(self, text: str, timeout: float = 60.0) -> None:
+    def expect(self, text: str, timeout: float = 120.0) -> None:
         """Wait until ``text`` is shown from now on."""
         seen, deadline = len(self.shown), time.monotonic() + timeout
         while text not in self.shown[seen:]:
@@ -120,13 +121,19 @@ def start_session(domain_id, tmp_path):
 @pytest.fixture
 def wait_until():
     """``wait_until(condition, what)``"""
-    def wait(condition, what: str, timeout: float = 90.0) -> None:
+    def wait(condition, what: str, timeout: float = 180.0) -> None:
         deadline = time.monotonic() + timeout
         while not condition():
             assert time.monotonic() < deadline, f'waited {timeout} s in vain for {what}'
             time.sleep(0.1)
 
     return wait
+
+
+@pytest.fixture
+def episodes_taught():
+    """How many a session's folder tells of."""
+    return lambda folder: sum(row['phase'] == 'teach' for row in read_rows(folder / 'learner' / 'episodes.csv'))
 
 
 @pytest.fixture

@@ -1,0 +1,70 @@
+"""Sessions as a person starts them: real keys in a real pty, and what is said when something is wrong."""
+
+import signal
+
+import pytest
+from shared_control.session.bag import read_bag
+
+
+def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summary_of):
+    """Real keys in a real pty, M_yh on the topic, the tray tilts and the ball rolls, and the person says when."""
+    folder = tmp_path / 'session'
+    session = start_session('--tutor', 'keyboard', '--test-episodes', 1, '--params-file', unpaced,
+                            '--output', folder, terminal=True)
+    session.expect('TEACH')
+    session.expect('time left')
+    session.type(b'\x1b[D')
+    session.expect('+5.0')
+    session.type(b'a')
+    session.expect('+10.0')
+    session.expect('left side down')
+    session.type(b'q')
+    session.expect('TEST')
+    session.process.wait(120)
+    assert session.process.returncode == 0, session.shown[-3000:]
+
+    bag = read_bag(folder / 'bag')
+    assert {press.source for press in bag.presses} == {'terminal'}
+    held = bag.human.m_y == 10.0
+    assert held.sum() > 10
+    begin, end = bag.human.stamp_ns[held][[0, -1]]
+    during = (bag.ball.stamp_ns >= begin) & (bag.ball.stamp_ns <= end)
+    x = bag.ball.position[during, 0]
+    assert x[-1] > x[0] or x[-1] > -0.32, 'the ball rolls to +x, the left of the picture, or lies at its end'
+    assert summary_of(folder)['simulated_tutor'] is False
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['--tutor', 'keyboard'], 'there is no terminal to press keys in'),
+    (['--tutor', 'sim', '--params-file', 'nowhere.yaml'], 'nowhere.yaml'),
+    (['--resume', 'nowhere'], 'there is no session folder'),
+    (['--preset', 'magic'], "invalid choice: 'magic'"),
+])
+def test_wrong_options_are_named(start_session, tmp_path, arguments, said):
+    session = start_session('--output', tmp_path / 'session', *arguments)
+    output = session.output()
+    assert session.process.returncode == 2
+    assert said in output and 'Traceback' not in output
+
+
+def test_a_folder_that_cannot_be_written_is_named(start_session, tmp_path):
+    (tmp_path / 'file').write_text('')
+    session = start_session('--tutor', 'sim', '--output', tmp_path / 'file' / 'session')
+    output = session.output()
+    assert session.process.returncode == 2
+    assert 'cannot write the session folder' in output and 'Traceback' not in output
+
+
+def test_a_corrupt_policy_ends_the_session_and_stays_as_it_is(start_session, unpaced, tmp_path, wait_until):
+    folder = tmp_path / 'session'
+    session = start_session('--tutor', 'sim', '--episodes', 1, '--params-file', unpaced, '--output', folder)
+    wait_until((folder / 'settings.json').exists, 'the settings')
+    session.process.send_signal(signal.SIGINT)
+    session.output()
+    policy = folder / 'learner' / 'policy.safetensors'
+    policy.write_bytes(b'not a policy')
+    session = start_session('--resume', folder)
+    output = session.output()
+    assert session.process.returncode == 1, output
+    assert 'policy.safetensors' in output and 'Traceback' not in output
+    assert policy.read_bytes() == b'not a policy'
