@@ -62,10 +62,13 @@ def test_lets_go_of_a_ball_at_rest_in_the_centre():
     assert pressed[-1][0] < 2.0
 
 
-def test_a_ball_that_rests_beside_the_centre_is_not_left_there():
-    tutor = SimulatedTutor(SHARP_EYED, seed=1)
-    slightly_off = Picture(0.02, 0.0, 0.0)
-    assert [key for _, key in presses(tutor, lambda t: slightly_off, seconds=8.0)][:1] == [Key.LEFT]
+def test_a_ball_that_rests_beside_the_centre_wears_out_patience():
+    beside = Picture(0.025, 0.0, 0.0)
+    pressed, never = (
+        presses(SimulatedTutor(replace(SHARP_EYED, patience=patience, generosity=0.0), seed=1), lambda t: beside, 8.0)
+        for patience in (EXPERT.patience, 0.0))
+    assert [key for _, key in pressed][:1] == [Key.LEFT]
+    assert never == []
 
 
 def test_an_adapting_tutor_becomes_an_expert():

@@ -27,8 +27,11 @@ NOISE_SECONDS = 0.3
 TRUST_SECONDS = 3.0
 """How fast a tutor comes to trust the robot, or ceases to, s."""
 
-PATIENCE_TILT_MAX = 0.05
+PATIENCE_TILT_MAX = 0.02
 """rad: no tutor asks for more because the ball keeps off the centre."""
+
+PATIENCE_SECONDS = 5.0
+"""How long tutors remember that it did, s."""
 
 _STREAM = 1
 """Keeps the tutor's random numbers apart from the ball starts of the same seed."""
@@ -68,7 +71,7 @@ class SimulatedTutor:
     moment that the tutor now sees, will go on to do so, and needs no help for what is yet to come. A robot that
     does not is taken to keep its tilt as it is. And who trusts the robot leaves more to it. So the tutor lets go of a
     robot that does well. A ball that keeps to one side of the centre wears out the tutor's patience: the tilt wanted
-    grows until a press is due, and is forgotten when the ball is on the other side.
+    grows until a press is due.
 
     As a ``Person`` (:mod:`shared_control.envs.local_plant`) it holds the keys of an environment in process; a node
     calls :meth:`key` and publishes what it returns.
@@ -166,9 +169,8 @@ class SimulatedTutor:
         velocity_now = velocity + BALL_ACCELERATION * (tilt + tilt_now) / 2 * lead
         error_now = error - (velocity + velocity_now) / 2 * lead
         ideal_now = self._ideal_tilt(error_now, velocity_now)
-        if self._wearing * error <= 0.0:
-            self._wearing = 0.0
-        self._wearing = _bounded(self._wearing + self.profile.patience * error * elapsed, PATIENCE_TILT_MAX)
+        kept = 1.0 - elapsed / PATIENCE_SECONDS
+        self._wearing = _bounded(kept * self._wearing + self.profile.patience * error * elapsed, PATIENCE_TILT_MAX)
         ideal = self._trust * ideal_then + (1.0 - self._trust) * ideal_now + self._wearing
         lacking = (ideal - robot_tilt) / TILT_OF_MOMENT
         if abs(lacking) < self.profile.tolerance * (1.0 + self.profile.generosity * self._trust):

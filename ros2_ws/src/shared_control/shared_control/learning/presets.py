@@ -79,7 +79,7 @@ class Preset:
 
 PRESETS: dict[str, Preset] = {preset.name: preset for preset in (
     Preset('coached', DEFAULT_TASK, PpoSettings(
-        initial_std=0.4, std_decay=0.9, learning_rate=3e-2, learning_rate_decay=0.9), CoachingSettings()),
+        initial_std=0.4, std_decay=0.93, learning_rate=3e-2, learning_rate_decay=0.93), CoachingSettings()),
     Preset('thesis', THESIS_TASK, PpoSettings(
         hidden=(64, 64), value_hidden=(64, 64), initial_std=1.0, std_decay=None, learning_rate=3e-4, batch_size=64)),
     Preset('autonomous', DEFAULT_TASK, PpoSettings(
