@@ -122,6 +122,7 @@ def test_a_killed_recorder_loses_at_most_a_second_and_the_next_goes_on(start_rec
     recorder = start_recorder(bag)
     second = bag / 'bag_1.mcap'
     traffic.run_until(lambda: second.exists() and second.stat().st_size > 30_000)
+    traffic.wait_for_recorder()
     code, errors = start_recorder(bag).wait()
     assert code == 2
     assert f'error: {second} is being recorded by another process' in errors
