@@ -26,9 +26,9 @@ class TutorProfile:
     """Tilt wanted against each m/s of the ball, rad s/m."""
     tolerance: float = 3.0
     """What the robot may lack before the tutor helps, N m. Who sees less exactly notices less."""
-    patience: float = 0.3
+    patience: float = 0.6
     """How soon a ball that keeps off the centre brings more tilt, rad/(m s)."""
-    generosity: float = 2.0
+    generosity: float = 1.0
     """How many more tolerances the robot may lack once the tutor trusts it."""
     adapts_within: int = 0
     """Episodes that the tutor, at first a low performer, needs to become what the rest says (Fig. 20)."""
@@ -40,13 +40,13 @@ EXPERT = TutorProfile()
 
 _LOW = replace(
     EXPERT, reaction_time=0.35, key_rate=3.0, position_noise=0.012, velocity_noise=0.03, pitch_noise=0.009,
-    tolerance=5.0)
+    tolerance=5.0, patience=0.15, generosity=2.0)
 
 PROFILES: dict[str, TutorProfile] = {
     'expert': EXPERT,
     'high': replace(
         EXPERT, reaction_time=0.30, key_rate=4.0, position_noise=0.008, velocity_noise=0.02, pitch_noise=0.006,
-        tolerance=4.0),
+        tolerance=4.0, patience=0.15, generosity=2.0),
     'low': _LOW,
     'adapting': replace(EXPERT, adapts_within=5),
     'sham': replace(EXPERT, watches=False),

@@ -27,7 +27,7 @@ NOISE_SECONDS = 0.3
 TRUST_SECONDS = 3.0
 """How fast a tutor comes to trust the robot, or ceases to, s."""
 
-PATIENCE_TILT_MAX = 0.02
+PATIENCE_TILT_MAX = 0.04
 """rad: no tutor asks for more because the ball keeps off the centre."""
 
 PATIENCE_SECONDS = 5.0
