@@ -61,8 +61,9 @@ def in_episode(profile: TutorProfile, episode: int) -> TutorProfile:
         return profile
     part = (episode - 1) / profile.adapts_within
     return replace(profile, **{
-        name: (1.0 - part) * getattr(_LOW, name) + part * getattr(profile, name)
-        for name in ('reaction_time', 'key_rate', 'position_noise', 'velocity_noise', 'pitch_noise', 'tolerance')})
+        name: (1.0 - part) * getattr(_LOW, name) + part * getattr(profile, name) for name in (
+            'reaction_time', 'key_rate', 'position_noise', 'velocity_noise', 'pitch_noise', 'tolerance', 'patience',
+            'generosity')})
 
 
 def profile(name: str) -> TutorProfile:
