@@ -13,9 +13,10 @@ from typing import Any
 import graph
 import headless
 import page
+import training
 
 MEASUREMENTS: dict[str, Callable[[], dict[str, Any]]] = {
-    'headless': headless.measure, 'graph': graph.measure, 'page': page.measure}
+    'headless': headless.measure, 'graph': graph.measure, 'page': page.measure, 'train': training.measure}
 
 
 def main() -> None:

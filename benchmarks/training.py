@@ -1,0 +1,39 @@
+"""How long learning takes on one core: from nothing to skilled, tests included, and the pause after an episode."""
+
+import statistics
+from typing import Any
+
+from shared_control.human.profiles import profile
+from shared_control.learning.hooks import Hooks
+from shared_control.learning.presets import preset
+from shared_control.learning.record import EpisodeRecord
+from shared_control.learning.training import train
+
+SEEDS = range(3)
+EPISODES = 40
+
+
+class _Pauses(Hooks):
+    """Notes how long each update took."""
+
+    def __init__(self) -> None:
+        self.seconds: list[float] = []
+
+    def episode_learned(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        self.seconds.append(record.learn_seconds)
+
+
+def measure() -> dict[str, Any]:
+    """Wall times, s, of the median seed with the least and the most; ``learn_pause_s`` of all coached episodes."""
+    pauses = _Pauses()
+    figures: dict[str, Any] = {}
+    for name, tutor, hooks in (('coached', profile('expert'), pauses), ('autonomous', None, Hooks())):
+        runs = [train(preset(name), tutor, seed, EPISODES, hooks=hooks) for seed in SEEDS]
+        seconds = sorted(round(run.seconds, 1) for run in runs)
+        figures[f'{name}_to_skilled_s'] = statistics.median(seconds)
+        figures[f'{name}_to_skilled_s_min_max'] = [seconds[0], seconds[-1]]
+        figures[f'{name}_episodes'] = [run.skilled for run in runs]
+    figures['learn_pause_s'] = round(statistics.median(pauses.seconds), 3)
+    figures['learn_pause_s_max'] = round(max(pauses.seconds), 3)
+    return figures
