@@ -23,14 +23,14 @@ from scipy.stats import bootstrap
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.local_plant import LocalPlant
 from shared_control.human.profiles import profile
-from shared_control.learning.evaluate import evaluate, passes, test_settings
+from shared_control.learning.evaluate import Evaluation, test_settings
 from shared_control.learning.hooks import Hooks
 from shared_control.learning.learn import learn
-from shared_control.learning.policy_file import load_policy
+from shared_control.learning.policy_file import POLICY_NAME, load_policy
 from shared_control.learning.presets import preset
 from shared_control.learning.record import EpisodeRecord
-from shared_control.learning.training import POLICY_NAME, TEST_SEED, train
-from shared_control.seeds import episode_seed
+from shared_control.learning.training import TEST_SEED, passes_now, train
+from shared_control.protocols.randomized import run_randomized
 from tqdm import tqdm
 
 RETENTION_EPISODES = 20
@@ -85,9 +85,7 @@ def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) 
 def final_test(policy: Path, seed: int) -> dict[str, float]:
     """The randomised test of a policy."""
     learner = load_policy(policy)
-    env = BalanceEnv(LocalPlant(None, learner.preset.task.moment_limit), test_settings(learner.preset.task))
-    test = evaluate(learner.act, env, seed=TEST_SEED + seed)
-    env.close()
+    test = Evaluation(run_randomized(learner.act, learner.preset.task, seed=TEST_SEED + seed).episodes)
     return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
 
 
@@ -100,7 +98,7 @@ class _TestEach(Hooks):
 
     def episode_learned(self, record: EpisodeRecord) -> None:
         """See :class:`Hooks`."""
-        self.passed.append(passes(self._learner.act, self._env, episode_seed(TEST_SEED + self._seed, record.episode)))
+        self.passed.append(passes_now(self._learner, self._env, self._seed))
 
 
 def retained(policy: Path, seed: int) -> list[bool]:

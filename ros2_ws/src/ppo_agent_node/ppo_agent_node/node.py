@@ -12,11 +12,11 @@ from rclpy.node import Node
 from shared_control.envs.balance_env import BalanceEnv
 from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted
 from shared_control.learning.episode_ppo import EpisodePPO
-from shared_control.learning.episode_table import EpisodeTable
+from shared_control.learning.episode_table import TABLE_NAME, EpisodeTable
 from shared_control.learning.evaluate import TEST_SECONDS, evaluate, test_settings
 from shared_control.learning.hooks import Hooks
 from shared_control.learning.learn import learn, make_learner, warm_up
-from shared_control.learning.policy_file import PolicyFileError, load_policy, save_policy
+from shared_control.learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.learning.record import EpisodeRecord
 from shared_control_ros.diagnostics import Diagnostics
@@ -30,8 +30,6 @@ from .training_topics import TrainingTopics
 
 STEPS_PER_PROGRESS = 5
 """Progress is told at 10 Hz."""
-POLICY_NAME = 'policy.safetensors'
-TABLE_NAME = 'episodes.csv'
 
 
 class _Stopped(Exception):

@@ -8,6 +8,9 @@ from pathlib import Path
 from ..files import write_atomically
 from .record import EpisodeRecord
 
+TABLE_NAME = 'episodes.csv'
+"""Of the file in a learner's folder."""
+
 
 class EpisodeTable:
     """Appends rows, each on disk before the next episode begins.

@@ -25,6 +25,8 @@ from .presets import PRESETS, CoachingSettings, PpoSettings, Preset
 
 FORMAT = 'shared-control policy 2'
 SUFFIX = '.safetensors'
+POLICY_NAME = f'policy{SUFFIX}'
+"""Of the file in a learner's folder."""
 SIZE_MAX = 16 * 2**20
 """Bytes; a policy of two layers of 32 takes 40 thousand."""
 HIDDEN_MAX = (4, 1024)

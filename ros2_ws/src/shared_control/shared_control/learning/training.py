@@ -15,16 +15,14 @@ from ..human.profiles import TutorProfile
 from ..human.tutor import SimulatedTutor
 from ..seeds import episode_seed
 from .episode_ppo import EpisodePPO
-from .episode_table import EpisodeTable
+from .episode_table import TABLE_NAME, EpisodeTable
 from .evaluate import passes, test_settings
 from .hooks import Hooks
 from .learn import learn, make_learner
-from .policy_file import load_policy, save_policy
+from .policy_file import POLICY_NAME, load_policy, save_policy
 from .presets import Preset
 from .record import EpisodeRecord
 
-POLICY_NAME = 'policy.safetensors'
-TABLE_NAME = 'episodes.csv'
 RUN_NAME = 'run.json'
 TENSORBOARD_NAME = 'tensorboard'
 
@@ -113,6 +111,11 @@ def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, 
     return run
 
 
+def passes_now(learner: EpisodePPO, test_env: BalanceEnv, seed: int) -> bool:
+    """Whether the learner of the run ``seed`` passes the test that belongs to the episodes it has learned from."""
+    return passes(learner.act, test_env, episode_seed(TEST_SEED + seed, learner.episode))
+
+
 def read_run(folder: Path) -> TrainingRun:
     """The run in ``folder``, as far as it got.
 
@@ -175,8 +178,7 @@ class _Keeper(Hooks):
         run.returns.append(record.episode_return)
         run.intervention_rates.append(record.intervention_rate)
         if self._evaluate_every and record.episode % self._evaluate_every == 0:
-            seed = episode_seed(TEST_SEED + run.seed, record.episode)
-            run.tests.append((record.episode, passes(self._learner.act, self._test_env, seed)))
+            run.tests.append((record.episode, passes_now(self._learner, self._test_env, run.seed)))
         run.seconds = time.monotonic() - self._started
         if self._folder is not None:
             self._keep(record, self._folder)

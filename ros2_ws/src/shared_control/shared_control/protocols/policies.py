@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..learning.episode_ppo import EpisodePPO
-from ..learning.policy_file import PolicyFileError, load_policy
+from ..learning.policy_file import POLICY_NAME, PolicyFileError, load_policy
 from ..session.folder import SessionFolder
 
 
@@ -26,7 +26,7 @@ def load_policies(paths: Sequence[Path]) -> dict[str, EpisodePPO]:
 def _policy_file(path: Path) -> Path:
     if not path.is_dir():
         return path
-    places = (path / 'policy.safetensors', SessionFolder(path).policy)
+    places = (path / POLICY_NAME, SessionFolder(path).policy)
     found = next((place for place in places if place.exists()), None)
     if found is None:
         raise PolicyFileError(f'no policy in {path}: expected {" or ".join(map(str, places))}')

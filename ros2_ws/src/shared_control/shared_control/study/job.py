@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from ..control.references import FREQUENCIES
-from ..learning.episode_table import read_rows
+from ..learning.episode_table import TABLE_NAME, read_rows
 from ..learning.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
-from ..learning.policy_file import load_policy
+from ..learning.policy_file import POLICY_NAME, load_policy
 from ..learning.presets import preset
 from ..learning.training import train
 from ..protocols.perturbation import run_perturbation
@@ -53,7 +53,7 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
         job.condition.episodes, until_skilled=True, folder=path, evaluate_every=job.condition.evaluate_every)
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
-        episodes=table(path / 'episodes.csv'), tests=run_tests(plan, job, path / 'policy.safetensors'),
+        episodes=table(path / TABLE_NAME), tests=run_tests(plan, job, path / POLICY_NAME),
         seconds=time.monotonic() - started)
 
 
