@@ -7,7 +7,8 @@ the command is given again.
 
     python benchmarks/learning.py                              # all conditions but thesis-*, 24 seeds: hours
     python benchmarks/learning.py --conditions coached-expert --seeds 8
-    python benchmarks/learning.py --retention                  # 20 further episodes without the tutor as well: hours
+    python benchmarks/learning.py --conditions coached-expert --retention      # 20 further episodes without the tutor
+    python benchmarks/learning.py --conditions coached-expert-10 autonomous-10 # ten episodes each, skilled or not
 """
 
 import argparse
@@ -34,6 +35,7 @@ from shared_control.protocols.randomized import run_randomized
 from tqdm import tqdm
 
 RETENTION_EPISODES = 20
+RETENTION_TESTED_EVERY = 5
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ class Condition:
     episodes: int = 20
     human_only: bool = False
     evaluate_every: int = 1
+    until_skilled: bool = True
 
 
 CONDITIONS = {
@@ -55,6 +58,8 @@ CONDITIONS = {
     'coached-sham': Condition('coached', 'sham'),
     'coached-nobody': Condition('coached'),
     'autonomous': Condition('autonomous', episodes=40),
+    'coached-expert-10': Condition('coached', 'expert', 10, evaluate_every=0, until_skilled=False),
+    'autonomous-10': Condition('autonomous', None, 10, evaluate_every=0, until_skilled=False),
     'thesis-expert': Condition('thesis', 'expert', 800, evaluate_every=5),
     'thesis-nobody': Condition('thesis', None, 800, evaluate_every=5),
     'thesis-human-only': Condition('thesis', 'expert', 800, human_only=True, evaluate_every=5),
@@ -71,7 +76,7 @@ def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) 
     training = train(
         preset(condition.preset), None if condition.tutor is None else profile(condition.tutor), seed,
         min(condition.episodes, limit or condition.episodes), human_only=condition.human_only, folder=folder,
-        evaluate_every=condition.evaluate_every)
+        evaluate_every=condition.evaluate_every, until_skilled=condition.until_skilled)
     result = {
         'seed': seed, 'skilled': training.skilled, 'first_pass': training.first_pass, 'episodes': training.episodes,
         'intervention_rates': training.intervention_rates, 'seconds': training.seconds,
@@ -89,24 +94,26 @@ def final_test(policy: Path, seed: int) -> dict[str, float]:
     return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
 
 
-class _TestEach(Hooks):
-    """Tests after each episode."""
+class _TestNowAndThen(Hooks):
+    """Tests after every few episodes."""
 
     def __init__(self, learner: Any, env: BalanceEnv, seed: int):
         self._learner, self._env, self._seed = learner, env, seed
+        self._skilled = learner.episode
         self.passed: list[bool] = []
 
     def episode_learned(self, record: EpisodeRecord) -> None:
         """See :class:`Hooks`."""
-        self.passed.append(passes_now(self._learner, self._env, self._seed))
+        if (record.episode - self._skilled) % RETENTION_TESTED_EVERY == 0:
+            self.passed.append(passes_now(self._learner, self._env, self._seed))
 
 
 def retained(policy: Path, seed: int) -> list[bool]:
-    """Go on learning without the tutor: whether the policy passed after each of these episodes."""
+    """Go on learning without the tutor: whether the policy passed whenever it was tested."""
     learner = load_policy(policy)
     task = learner.preset.task
     env, test_env = (BalanceEnv(LocalPlant(None, task.moment_limit), s) for s in (task, test_settings(task)))
-    watch = _TestEach(learner, test_env, seed)
+    watch = _TestNowAndThen(learner, test_env, seed)
     learn(learner, env, learner.episode + RETENTION_EPISODES, watch)
     env.close()
     test_env.close()
@@ -154,7 +161,8 @@ def tell(row: dict[str, Any]) -> None:
           f'{row["intervention_first"]:.0%} of the first, {row["intervention_last"]:.0%} of the last episode; '
           f'{interval("seconds")} s', flush=True)
     if 'retained' in row:
-        print(f'{"":{len(row["condition"])}}  keeps it for {RETENTION_EPISODES} episodes without the tutor: '
+        print(f'{"":{len(row["condition"])}}  keeps it for {RETENTION_EPISODES} episodes without the tutor, '
+              f'tested every {RETENTION_TESTED_EVERY}: '
               f'{row["retained"]}', flush=True)
 
 

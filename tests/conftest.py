@@ -97,7 +97,7 @@ def unpaced(tmp_path) -> Path:
     """A parameter file for sessions that need not last as long as they would in real time."""
     content = parameters.load()
     content['panda_sim_node']['paced'] = False
-    content['ppo_agent_node']['test_episodes'] = 1
+    content['ppo_agent_node'] |= {'test_episodes': 1, 'episode_seconds': 4.0}
     path = tmp_path / 'unpaced.yaml'
     parameters.save(content, path)
     return path

@@ -12,6 +12,8 @@ from shared_control_ros import contract
 from shared_control_ros.processes import leave_with_the_parent
 from teach_page_node.testing import Browser
 
+pytestmark = pytest.mark.alone
+
 ROLLED = 60
 """Pixels that no ball at rest moves."""
 TRIANGLES = 'return getElement(teachPage.scene).renderer.info.render.triangles'

@@ -43,22 +43,23 @@ def count_with_mcap(bag):
 def test_a_session_is_interrupted_resumed_and_reported(start_session, unpaced, tmp_path, wait_until, summary_of,
                                                        episodes_taught):
     folder = tmp_path / 'session'
-    session = start_session('--tutor', 'sim', '--episodes', 2, '--test-episodes', 1, '--params-file', unpaced,
+    session = start_session('--tutor', 'sim', '--episodes', 5, '--test-episodes', 1, '--params-file', unpaced,
                             '--output', folder)
-    wait_until(lambda: episodes_taught(folder) == 1, 'the first episode')
+    wait_until(lambda: episodes_taught(folder), 'the first episode')
     session.process.send_signal(signal.SIGINT)
     said = session.output()
     assert session.process.returncode == 130
     assert f'--resume {folder}' in said and 'Traceback' not in said
-    assert summary_of(folder)['episodes_taught'] == 1
+    taught = summary_of(folder)['episodes_taught']
+    assert 1 <= taught < 5
 
     session = start_session('--resume', folder)
     said = session.output()
     assert session.process.returncode == 0, said
     assert 'simulated' in said and 'robot alone' in said
-    assert episodes_taught(folder) == 2
-    assert [row['episode'] for row in read_rows(folder / 'learner' / 'episodes.csv')][:2] == ['1', '2']
-    assert read_description(folder / 'learner' / 'policy.safetensors')['episode'] == 2
+    assert episodes_taught(folder) == 5
+    assert [row['episode'] for row in read_rows(folder / 'learner' / 'episodes.csv')][:5] == ['1', '2', '3', '4', '5']
+    assert read_description(folder / 'learner' / 'policy.safetensors')['episode'] == 5
     for name in ('learner/policy.json', 'parameters.yaml', 'settings.json', 'test.json', 'report.html', 'picture.png'):
         assert (folder / name).stat().st_size > 0
     summary = summary_of(folder)
@@ -71,7 +72,7 @@ def test_a_session_is_interrupted_resumed_and_reported(start_session, unpaced, t
     assert {name for name in summary if again[name] != summary[name]} == {'picture', 'report'}, 'from the bag alone'
 
     counts = count_with_mcap(folder / 'bag')
-    assert counts['/joint_states'] > 40_000 and counts['/human/keys'] > 0
+    assert counts['/joint_states'] > 4000 and counts['/human/keys'] > 0
     second = tmp_path / 'second'
     second.mkdir()
     (second / 'bag_1.mcap').symlink_to(files[1])

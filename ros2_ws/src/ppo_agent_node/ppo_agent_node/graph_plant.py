@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted, PlantState
@@ -173,3 +174,4 @@ class GraphPlant:
         """Leave no moment behind."""
         if self._stamp_ns:
             self._publish(0.0)
+            self._publisher.wait_for_all_acked(Duration(nanoseconds=200_000_000))

@@ -6,6 +6,7 @@ Takes /ball, /joint_states_throttle, /human/target_wrench and /target_wrench, pu
 """
 
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from rclpy.node import Node
@@ -19,6 +20,7 @@ from shared_control.learning.learn import learn, make_learner, warm_up
 from shared_control.learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.learning.record import EpisodeRecord
+from shared_control.task.settings import DEFAULT_TASK
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import ParameterError, declare
@@ -49,6 +51,9 @@ class PpoAgentNode(Hooks):
         self._episodes = declare(
             node, 'episodes', 0, 'Teach until this many, those of an earlier run included; 0: until ~/finish is '
             'called or the time is up.', minimum=0, maximum=100_000)
+        self._episode_seconds = declare(
+            node, 'episode_seconds', DEFAULT_TASK.episode_seconds, 'The longest an episode of teaching lasts.',
+            unit='s', minimum=1.0, maximum=600.0)
         minutes = declare(
             node, 'max_minutes', 45.0, 'Teach for this long at the most.', unit='min', minimum=0.1, maximum=1440.0)
         self._test_episodes = declare(
@@ -114,7 +119,8 @@ class PpoAgentNode(Hooks):
             self._wait()
             if self._teaches:
                 self._practise()
-                learn(self._learner, BalanceEnv(self._plant, self._learner.preset.task), self._episodes or None, self)
+                task = replace(self._learner.preset.task, episode_seconds=self._episode_seconds)
+                learn(self._learner, BalanceEnv(self._plant, task), self._episodes or None, self)
             if self._test_episodes:
                 self._test()
             self._training.enter('done')
@@ -195,7 +201,7 @@ class PpoAgentNode(Hooks):
             raise PlantInterrupted('the person starts it over')
         self._diagnostics.tick()
         if record.steps % STEPS_PER_PROGRESS == 0:
-            length = self._learner.preset.task.episode_seconds if record.phase == 'teach' else TEST_SECONDS
+            length = self._episode_seconds if record.phase == 'teach' else TEST_SECONDS
             self._training.progress(length - record.steps * POLICY_PERIOD, record.human_share)
 
     def learning_started(self, record: EpisodeRecord) -> None:

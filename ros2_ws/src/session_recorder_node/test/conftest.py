@@ -93,7 +93,7 @@ class Traffic:
                 assert time.monotonic() < deadline, f'no recorder subscribes to {topic}'
                 time.sleep(0.01)
             self._seen |= new
-        time.sleep(0.5)  # the other side must have found this one, too
+        time.sleep(1.5)  # the other side must have found this one, too
 
     def publish(self, topic: Topic, message: object) -> None:
         """Publish and remember one message: as bytes, since its padding differs each time it is serialized."""

@@ -4,7 +4,7 @@ import { connect } from "./live.js";
 import { listenToKeys } from "./keys.js";
 import { listenToPlayer, showPlayer } from "./player.js";
 import { showHistory, showMoments } from "./charts.js";
-import { showScene } from "./scene.js";
+import { showScene, watchPace } from "./scene.js";
 import { showCloseView } from "./close_view.js";
 import { showConnection, showPicture, showRole } from "./panel.js";
 import { isMounted, part } from "./parts.js";
@@ -12,6 +12,8 @@ import { isMounted, part } from "./parts.js";
 while (!isMounted()) await new Promise((resolve) => setTimeout(resolve, 50)); // NiceGUI builds the page after this is loaded
 
 const isReplay = document.body.classList.contains("replay");
+
+watchPace();
 
 // For whoever measures.
 window.teachPage.pictures = 0;

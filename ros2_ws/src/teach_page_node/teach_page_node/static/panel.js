@@ -27,7 +27,7 @@ export function showPicture(picture, isReplay) {
 
   const left = isEpisode && picture.time_left !== null ? Math.max(picture.time_left, 0) : null;
   setText("time-left", left === null ? "" : `${left.toFixed(0)} s left`);
-  part("time-bar").style.width = left === null ? "0" : `${(100 * left) / EPISODE_SECONDS[phase]}%`;
+  part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / EPISODE_SECONDS[phase])}%`;
   setText("success", picture.success === null ? "not yet" : `${Math.round(100 * picture.success)} % kept in the middle`);
   setText("human-name", picture.hand === "tutor" ? "simulated tutor" : role.teaches && !isReplay ? "you" : "human");
   for (const name of ["human", "agent", "applied"]) setText(`${name}-moment`, moment(picture[name]));

@@ -11,20 +11,24 @@ let ratio = window.devicePixelRatio;
 let drawn = 0;
 
 // Without a graphics card a smaller picture is drawn rather than a jerky one.
-setInterval(() => {
+function keepPace() {
   const { renderer } = window.getElement(window.teachPage.scene);
   const before = drawn;
   drawn = renderer.info.render.frame;
   if (document.hidden || drawn - before >= 2 * FEWEST_A_SECOND || ratio <= COARSEST) return;
   ratio = Math.max(COARSEST, 0.8 * ratio);
   renderer.setPixelRatio(ratio);
-}, 2000);
+}
 
 function findMeshes() {
   const view = window.getElement(window.teachPage.scene);
-    const named = {};
+  const named = {};
   for (const { mesh } of view.objects.values()) if (mesh?.name) named[mesh.name] = mesh;
   return "shadow" in named && "ball" in named && "joint7" in named ? named : null;
+}
+
+export function watchPace() {
+  setInterval(keepPace, 2000);
 }
 
 export function showScene(picture) {
