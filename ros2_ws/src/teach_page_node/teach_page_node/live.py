@@ -9,9 +9,9 @@ from sensor_msgs.msg import Joy
 from shared_control.human.keystrokes import Key, KeyPresses
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
-from teleop_key_node.lesson import Lesson
-from teleop_key_node.observer import Moment, Observer
-from teleop_key_node.scene import Scene
+from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.watching.observer import Moment, Observer
+from shared_control_ros.watching.scene import Scene
 
 from .history import History
 from .page_requests import PageRequests

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 from rclpy.node import Node
 from shared_control_ros import contract
+from shared_control_ros.watching.requests import Requests
 from std_srvs.srv import Trigger
-from teleop_key_node.requests import Requests
 
 _HINT = 'is the learner (ppo_agent_node) running?'
 

@@ -14,8 +14,8 @@ from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import set_ns
+from shared_control_ros.watching.lesson import Lesson
 
-from .lesson import Lesson
 from .panel import Panel
 from .sources import KeySources
 from .terminal import NoTerminal, Terminal

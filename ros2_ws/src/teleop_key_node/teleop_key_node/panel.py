@@ -9,12 +9,12 @@ from sensor_msgs.msg import Joy
 from shared_control.human.keystrokes import Key
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.watching.observer import Observer
+from shared_control_ros.watching.requests import Requests
+from shared_control_ros.watching.scene import Scene
 
 from .keyboard import Keyboard, Stroke
-from .lesson import Lesson
-from .observer import Observer
-from .requests import Requests
-from .scene import Scene
 from .screen import render
 from .sources import KeySources
 from .terminal import Terminal

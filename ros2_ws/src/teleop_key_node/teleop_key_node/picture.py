@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
+from shared_control_ros.watching.scene import Scene
 
 from .canvas import to_lines
-from .scene import Scene
 
 TRAY_HALF_LENGTH = 0.20
 """m"""

@@ -2,8 +2,9 @@
 
 import math
 
+from shared_control_ros.watching.scene import Scene
+
 from .picture import STEEPER, draw, has_fallen
-from .scene import Scene
 
 _PHASES = {
     'teach': 'Keep the ball in the middle: the robot learns from your keys.',

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
+from shared_control_ros.watching.scene import Scene
 from teleop_key_node.picture import draw
-from teleop_key_node.scene import Scene
 from teleop_key_node.screen import render
 
 SCENE = Scene(

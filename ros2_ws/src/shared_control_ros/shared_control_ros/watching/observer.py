@@ -10,11 +10,11 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from shared_control.robot.model import PandaModel, pitch
-from shared_control_ros import contract
-from shared_control_ros.fast_loop import Polled
-from shared_control_ros.joints import joint_positions
-from shared_control_ros.stamps import to_ns
 
+from .. import contract
+from ..fast_loop import Polled
+from ..joints import joint_positions
+from ..stamps import to_ns
 from .scene import Scene
 
 SILENT_AFTER = 0.5

@@ -1,8 +1,9 @@
 """What the agent tells of the lesson that decides whether keys count."""
 
 from rclpy.node import Node
-from shared_control_ros import contract
-from shared_control_ros.fast_loop import Polled
+
+from .. import contract
+from ..fast_loop import Polled
 
 
 class Lesson:

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.task import Future
-from shared_control_ros import contract
 from std_srvs.srv import SetBool, Trigger
+
+from .. import contract
 
 ANSWER_WITHIN = 3.0
 """s"""
