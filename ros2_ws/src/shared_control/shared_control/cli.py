@@ -1,7 +1,8 @@
 """``shared-control``: one command, with subcommands from every installed package.
 
-A package adds its own through the entry-point group ``shared_control.commands``: a function that is given
-argparse's subparsers and sets the default ``run``, which takes the parsed arguments and returns the exit code.
+A package adds its own through the entry-point group ``shared_control.commands``: under the subcommand's name a function
+that is given argparse's subparsers and sets the default ``run``, which takes the parsed arguments and returns the exit
+code.
 """
 
 import argparse
@@ -14,7 +15,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         prog='shared-control', description='Teach a robot together with a learning agent.')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
-    for entry_point in sorted(entry_points(group='shared_control.commands'), key=lambda e: e.name):
+    known = sorted(entry_points(group='shared_control.commands'), key=lambda e: e.name)
+    # Only the one that is asked for, if it is there: some import torch, which takes seconds.
+    for entry_point in [e for e in known if e.name == (sys.argv[1:] or [''])[0]] or known:
         entry_point.load()(commands)
     args = parser.parse_args()
     try:
