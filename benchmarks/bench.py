@@ -16,7 +16,8 @@ import page
 import training
 
 MEASUREMENTS: dict[str, Callable[[], dict[str, Any]]] = {
-    'headless': headless.measure, 'graph': graph.measure, 'page': page.measure, 'train': training.measure}
+    'headless': lambda: {'headless': headless.measure()}, 'graph': lambda: {'graph': graph.measure()},
+    'page': lambda: {'page': page.measure()}, 'learning': training.measure}
 
 
 def main() -> None:
@@ -29,8 +30,10 @@ def main() -> None:
     for name, measure in MEASUREMENTS.items():
         if args.only in (None, name):
             print(f'{name} ...', flush=True)
-            results[name] = measure()
-            print(json.dumps({k: v for k, v in results[name].items() if k != 'rounds'}, indent=2), flush=True)
+            found = measure()
+            results |= found
+            print(json.dumps({key: {k: v for k, v in figures.items() if k != 'rounds'}
+                              for key, figures in found.items()}, indent=2), flush=True)
     args.output.parent.mkdir(parents=True, exist_ok=True)
     args.output.write_text(json.dumps(results, indent=2) + '\n')
     print(f'written to {args.output}')

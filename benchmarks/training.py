@@ -25,7 +25,8 @@ class _Pauses(Hooks):
 
 
 def measure() -> dict[str, Any]:
-    """Wall times, s, of the median seed with the least and the most; ``learn_pause_s`` of all coached episodes."""
+    """Wall times, s, of the median seed with the least and the most (``train``), and pauses of all coached episodes
+    (``learn``)."""
     pauses = _Pauses()
     figures: dict[str, Any] = {}
     for name, tutor, hooks in (('coached', profile('expert'), pauses), ('autonomous', None, Hooks())):
@@ -34,6 +35,5 @@ def measure() -> dict[str, Any]:
         figures[f'{name}_to_skilled_s'] = statistics.median(seconds)
         figures[f'{name}_to_skilled_s_min_max'] = [seconds[0], seconds[-1]]
         figures[f'{name}_episodes'] = [run.skilled for run in runs]
-    figures['learn_pause_s'] = round(statistics.median(pauses.seconds), 3)
-    figures['learn_pause_s_max'] = round(max(pauses.seconds), 3)
-    return figures
+    return {'train': figures, 'learn': {
+        'pause_s': round(statistics.median(pauses.seconds), 3), 'pause_s_max': round(max(pauses.seconds), 3)}}

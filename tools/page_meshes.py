@@ -1,7 +1,7 @@
 """Makes the meshes that the teaching page shows, from those of panda_tray_description.
 
 The originals have 95,000 faces and 8.5 MB of text, which a browser without a graphics card draws seven times a second.
-These keep the shape with a quarter of them. Run once; the result is part of teach_page_node:
+These keep the shape with an eighth of them. Run once; the result is part of teach_page_node:
 
     pip install trimesh==5.2.0 fast-simplification==0.2.0 scipy
     python tools/page_meshes.py ros2_ws/src/teach_page_node/teach_page_node/static/meshes
@@ -16,7 +16,7 @@ from panda_tray_description import URDF_PATH
 from trimesh.visual.material import PBRMaterial
 from trimesh.visual.texture import TextureVisuals
 
-FACES_OF_A_LINK = 4000
+FACES_OF_A_LINK = 2000
 SHARP_EDGE = np.radians(35)
 WHITE, DARK = (0.93, 0.93, 0.92), (0.25, 0.26, 0.28)
 

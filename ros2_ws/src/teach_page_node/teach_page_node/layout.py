@@ -12,7 +12,8 @@ _MOMENTS = (('human', 'you'), ('agent', 'robot'), ('applied', 'together'))
 
 def build(is_replay: bool) -> None:
     """One page."""
-    ui.add_head_html('<link rel="stylesheet" href="/static/page.css">')
+    ui.add_head_html('<link rel="stylesheet" href="/static/page.css">'
+                     '<script type="module" src="/static/no_graphics_card.js"></script>')
     ui.query('body').classes('replay' if is_replay else 'live')
     with ui.element('main'):
         _header()
