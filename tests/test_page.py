@@ -17,6 +17,7 @@ pytestmark = pytest.mark.alone
 ROLLED = 60
 """Pixels that no ball at rest moves."""
 TRIANGLES = 'return getElement(teachPage.scene).renderer.info.render.triangles'
+SMOOTHS = 'return getElement(teachPage.scene).renderer.getContext().getContextAttributes().antialias'
 
 
 @pytest.fixture(scope='class')
@@ -66,6 +67,7 @@ class TestASessionOnThePage:
         browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
         assert browser.text('role') == 'you teach'
         browser.wait(lambda: browser.script(TRIANGLES) > 5000, 'the meshes')
+        assert browser.script(SMOOTHS) is False, 'this browser draws by software'
         assert not browser.part('focus').is_displayed()
 
     def test_keys_move_tray_and_ball_the_right_way(self, browser, human):

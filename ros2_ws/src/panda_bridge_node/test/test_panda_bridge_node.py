@@ -61,7 +61,7 @@ def test_the_stand_in_has_the_calls_of_the_library():
 @pytest.fixture(scope='class')
 def states(with_stand_in, start_node, observer):
     states = observer.listen(contract.JOINT_STATES, depth=10_000)
-    start_node('panda_bridge_node', hostname='here', command_timeout=1.0)  # a busy machine is no silence
+    start_node('panda_bridge_node', hostname='here', command_timeout=0.5)  # a busy machine is no silence
     observer.spin(lambda: len(states) > 100)
     return states
 
@@ -108,8 +108,8 @@ class TestWiring:
         assert not any(states[-1].effort)
 
     def test_enabled_it_applies_torques_until_they_fall_silent(self, observer, states, commands):
-        self.enable_beside(observer, commands, [0.0] * 6 + [0.1])
-        self.send(observer, commands, [0.0] * 6 + [0.1], lambda: states[-1].effort[6] == 0.1)
+        self.enable_beside(observer, commands, [0.0] * 6 + [0.01])
+        self.send(observer, commands, [0.0] * 6 + [0.01], lambda: states[-1].effort[6] == 0.01)
         observer.spin(lambda: not any(states[-1].effort), what='silence ends the control')
 
     def test_a_reflex_ends_the_control_until_recovery(self, observer, states, commands):
