@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from rclpy.qos import DurabilityPolicy
 from shared_control_ros.contract import JOINT_STATES_THROTTLE, TOPICS
+from shared_control_ros.processes import node_environment
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / 'ros2_ws' / 'src'
@@ -26,6 +27,13 @@ def test_the_contract_page_has_the_topics_of_the_code():
             f'{topic.msg_type.__module__.split(".")[0]}/{topic.msg_type.__name__}',
             topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL, topic.qos.depth)
         for topic in (*TOPICS, JOINT_STATES_THROTTLE)}
+
+
+@pytest.mark.parametrize('page', PAGES, ids=name_of)
+def test_a_page_names_the_variable_that_restricts_dds(page, monkeypatch):
+    monkeypatch.delenv('ROS_AUTOMATIC_DISCOVERY_RANGE', raising=False)
+    monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE', raising=False)
+    assert set(re.findall(r'\w+_PROFILES_FILE', page.read_text())) <= node_environment().keys()
 
 
 def test_the_errors_of_troubleshooting_are_those_of_the_code():
