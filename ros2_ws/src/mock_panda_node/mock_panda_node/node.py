@@ -10,13 +10,11 @@ import time
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.task.balance import BallStarts
 from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
 from shared_control.world.effort_panda import EffortPanda, Mode
+from shared_control_ros.ball_starts import declare_ball_starts
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
@@ -46,10 +44,8 @@ class MockPandaNode:
         timeout = declare(
             node, 'command_timeout', 0.1, 'Without a command for this long the control ends and the joints brake.',
             unit='s', minimum=0.002, maximum=10.0)
-        seed = declare(
-            node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
-            minimum=0, maximum=2**31 - 1, read_only=False)
-
+        self._starts, seed = declare_ball_starts(
+            node, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.')
         pace = declare(
             node, 'pace', 1.0, "Of the robot's clock against the wall clock. Below 1, for a machine that is too slow "
             'for 1 kHz, it publishes /clock: start the other nodes with use_sim_time.', minimum=0.01, maximum=1.0)
@@ -57,7 +53,6 @@ class MockPandaNode:
         self._has_clock = pace < 1.0
 
         self._random = np.random.default_rng(seed)
-        self._starts = BallStarts(seed)
         world = BallOnTrayWorld(Ball(), CONTROL_PERIOD)
         world.reset(self._starts.next())
         self._robot = EffortPanda(world, timeout, limit_rate)
@@ -67,7 +62,6 @@ class MockPandaNode:
         node.create_service(Trigger, '~/error_recovery', self._on_error_recovery)
         node.create_service(Trigger, '~/reset', self._on_reset)
         node.create_service(SetBool, '~/pause', self._on_pause)
-        node.add_on_set_parameters_callback(self._on_parameters)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, self._period)
 
@@ -138,12 +132,6 @@ class MockPandaNode:
         response.success = False
         response.message = "a robot's time does not stand still"
         return response
-
-    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        for parameter in parameters:
-            if parameter.name == 'seed':
-                self._starts.seed(parameter.value)
-        return SetParametersResult(successful=True)
 
     # -- output ------------------------------------------------------------------------------------------------------
 

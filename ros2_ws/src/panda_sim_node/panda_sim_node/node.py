@@ -8,12 +8,10 @@ import gc
 import time
 
 import numpy as np
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.task.balance import BallStarts
 from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
+from shared_control_ros.ball_starts import declare_ball_starts
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
@@ -40,9 +38,8 @@ class PandaSimNode:
             node, 'mode', 'lockstep', 'lockstep: a tick waits for its torque. free_running: a tick a millisecond, '
             'whatever arrives, as a robot does.', choices=('lockstep', 'free_running'))
         self._paced = declare(node, 'paced', True, 'Keep lockstep to real time; false: as fast as it goes.')
-        seed = declare(
-            node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
-            minimum=0, maximum=2**31 - 1, read_only=False)
+        self._starts, _ = declare_ball_starts(
+            node, 'Of the sequence of ball starts; setting it begins the sequence anew.')
         timeout = declare(
             node, 'command_timeout', 0.1, 'free_running: without a torque for this long the joints brake.',
             unit='s', minimum=0.002, maximum=10.0)
@@ -53,7 +50,6 @@ class PandaSimNode:
 
         self._advance = self._advance_lockstep if mode == 'lockstep' else self._advance_free
         self._world = BallOnTrayWorld(ball, CONTROL_PERIOD)
-        self._starts = BallStarts(seed)
         self._world.reset(self._starts.next())
         self._states = StatePublisher(node, self._world)
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)
@@ -61,7 +57,6 @@ class PandaSimNode:
         self._pushes = PushInput(node, self._world, self._timeout_ticks)
         node.create_service(Trigger, '~/reset', self._on_reset)
         node.create_service(SetBool, '~/pause', self._on_pause)
-        node.add_on_set_parameters_callback(self._on_parameters)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
 
@@ -182,12 +177,6 @@ class PandaSimNode:
         response.success = True
         response.message = 'paused' if self._paused else 'running'
         return response
-
-    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        for parameter in parameters:
-            if parameter.name == 'seed':
-                self._starts.seed(parameter.value)
-        return SetParametersResult(successful=True)
 
     # -- output ----------------------------------------------------------------------------------------------------
 
