@@ -70,21 +70,23 @@ BY_DEFAULT = [name for name in CONDITIONS if not name.startswith('thesis')]
 def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) -> dict[str, Any]:
     """One run, and what became of its policy."""
     done = folder / 'result.json'
-    if done.exists():
-        return json.loads(done.read_text())
-    condition = CONDITIONS[name]
+    result = json.loads(done.read_text()) if done.exists() else taught(CONDITIONS[name], seed, folder, limit)
+    if retention and result['skilled'] is not None and 'retention' not in result:
+        result['retention'] = retained(folder / POLICY_NAME, seed)
+    done.write_text(json.dumps(result, indent=2) + '\n')
+    return result
+
+
+def taught(condition: Condition, seed: int, folder: Path, limit: int | None) -> dict[str, Any]:
+    """Teach a policy and test it."""
     training = train(
         preset(condition.preset), None if condition.tutor is None else profile(condition.tutor), seed,
         min(condition.episodes, limit or condition.episodes), human_only=condition.human_only, folder=folder,
         evaluate_every=condition.evaluate_every, until_skilled=condition.until_skilled)
-    result = {
+    return {
         'seed': seed, 'skilled': training.skilled, 'first_pass': training.first_pass, 'episodes': training.episodes,
         'intervention_rates': training.intervention_rates, 'seconds': training.seconds,
         **final_test(folder / POLICY_NAME, seed)}
-    if retention and training.skilled is not None:
-        result['retention'] = retained(folder / POLICY_NAME, seed)
-    done.write_text(json.dumps(result, indent=2) + '\n')
-    return result
 
 
 def final_test(policy: Path, seed: int) -> dict[str, float]:

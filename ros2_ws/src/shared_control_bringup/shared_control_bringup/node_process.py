@@ -5,11 +5,14 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from shared_control_ros.processes import leave_with_the_parent, node_environment
 
 CONTROL_LOOP = ('panda_sim_node', 'torque_ctrl_node')
+LOOP_PRIORITY = 50
+"""Real-time priority of the control loop (SCHED_FIFO), where `ulimit -r` allows it; that of ros2_control."""
 NICENESS = 10
 """Of the nodes outside the control loop."""
 UNUSABLE = 2
@@ -61,6 +64,9 @@ class NodeProcess:
         *others, last = sorted(os.sched_getaffinity(0))
         if self.name in CONTROL_LOOP:
             os.sched_setaffinity(0, {last})
+            if others:
+                with suppress(PermissionError):
+                    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(LOOP_PRIORITY))
         else:
             os.nice(NICENESS)
             if others:
