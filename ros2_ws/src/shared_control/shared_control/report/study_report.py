@@ -114,4 +114,6 @@ def _number(value: Any, form: str) -> str:
         return '–'
     if isinstance(value, float) and math.isinf(value):
         return '∞'
+    if abs(value) >= 1000:
+        form = '.0f'  # not 4.88e+03
     return format(value, form).replace('-', '−')
