@@ -48,7 +48,7 @@ def session(domain: int) -> Iterator[str]:
         content['teach_page_node'] = {'port': 0}
         file = Path(folder) / 'parameters.yaml'
         parameters.save(content, file)
-        nodes = {name: NodeProcess(name, file, Path(folder) / f'{name}.log') for name in NODES}
+        nodes = {name: NodeProcess(name, file, Path(folder) / f'{name}.log', in_real_time=True) for name in NODES}
         try:
             for node in nodes.values():
                 node.start()

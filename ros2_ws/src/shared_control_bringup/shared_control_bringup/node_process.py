@@ -27,10 +27,13 @@ class NodeProcess:
         parameters: ROS parameter file.
         log: where stdout and stderr go, appended.
         in_foreground: stay in this process' group, so that the node can use the terminal.
+        in_real_time: give the control loop real-time priority; an unpaced one would take its core from all others.
     """
 
-    def __init__(self, name: str, parameters: Path, log: Path, in_foreground: bool = False):
+    def __init__(self, name: str, parameters: Path, log: Path, in_foreground: bool = False,
+                 in_real_time: bool = False):
         self.name = name
+        self._in_real_time = in_real_time
         self.log = log
         self.starts = 0
         self._command = [sys.executable, '-m', f'{name}.node', '--ros-args', '--params-file', str(parameters),
@@ -64,7 +67,7 @@ class NodeProcess:
         *others, last = sorted(os.sched_getaffinity(0))
         if self.name in CONTROL_LOOP:
             os.sched_setaffinity(0, {last})
-            if others:
+            if others and self._in_real_time:
                 with suppress(PermissionError):
                     os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(LOOP_PRIORITY))
         else:

@@ -135,7 +135,8 @@ def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) 
     if settings['tutor'] == 'page':
         names.append('teach_page_node')
     names.append('ppo_agent_node')
-    nodes = [NodeProcess(name, folder.parameters, folder.logs / f'{name}.log',
+    paced = ros_parameters.load(folder.parameters).get('panda_sim_node', {}).get('paced', True)
+    nodes = [NodeProcess(name, folder.parameters, folder.logs / f'{name}.log', in_real_time=paced,
                          in_foreground=shows_screen and name == 'teleop_key_node') for name in names]
     log = (folder.logs / 'session.log').open('a')
 
