@@ -12,9 +12,10 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.task.balance import BallStarts
 from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
 from shared_control.world.effort_panda import EffortPanda, Mode
-from shared_control_ros.ball_starts import declare_ball_starts
+from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
@@ -44,8 +45,11 @@ class MockPandaNode:
         timeout = declare(
             node, 'command_timeout', 0.1, 'Without a command for this long the control ends and the joints brake.',
             unit='s', minimum=0.002, maximum=10.0)
-        self._starts, seed = declare_ball_starts(
-            node, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.')
+        seed = declare(
+            node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
+            minimum=0, maximum=2**31 - 1, read_only=False)
+        self._starts = BallStarts(seed)
+        follow_seed(node, self._starts)
         pace = declare(
             node, 'pace', 1.0, "Of the robot's clock against the wall clock. Below 1, for a machine that is too slow "
             'for 1 kHz, it publishes /clock: start the other nodes with use_sim_time.', minimum=0.01, maximum=1.0)

@@ -10,8 +10,9 @@ import time
 import numpy as np
 from rclpy.node import Node
 from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.task.balance import BallStarts
 from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
-from shared_control_ros.ball_starts import declare_ball_starts
+from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
@@ -38,8 +39,11 @@ class PandaSimNode:
             node, 'mode', 'lockstep', 'lockstep: a tick waits for its torque. free_running: a tick a millisecond, '
             'whatever arrives, as a robot does.', choices=('lockstep', 'free_running'))
         self._paced = declare(node, 'paced', True, 'Keep lockstep to real time; false: as fast as it goes.')
-        self._starts, _ = declare_ball_starts(
-            node, 'Of the sequence of ball starts; setting it begins the sequence anew.')
+        seed = declare(
+            node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
+            minimum=0, maximum=2**31 - 1, read_only=False)
+        self._starts = BallStarts(seed)
+        follow_seed(node, self._starts)
         timeout = declare(
             node, 'command_timeout', 0.1, 'free_running: without a torque for this long the joints brake.',
             unit='s', minimum=0.002, maximum=10.0)

@@ -46,8 +46,7 @@ def used(tree):
 def parameters_of(package):
     """Parameters that a node declares."""
     trees = [ast.parse(path.read_text()) for path in (PACKAGES / package / package).glob('*.py')]
-    shared = {'use_sim_time'} | {'seed' for tree in trees if calls(tree, 'declare_ball_starts')}
-    return shared | {call.args[1].value for tree in trees for call in calls(tree, 'declare')}
+    return {'use_sim_time'} | {call.args[1].value for tree in trees for call in calls(tree, 'declare')}
 
 
 def console_scripts(package):
