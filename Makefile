@@ -27,7 +27,7 @@ setup: $(VENV)/ready
 $(VENV)/ready: requirements.txt $(foreach p,$(PACKAGES),$(SRC)/$(p)/setup.py)
 	@$(PYTHON) tools/check_machine.py
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --disable-pip-version-check --no-compile --requirement requirements.txt
+	$(BIN)/pip install --disable-pip-version-check --requirement requirements.txt
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation \
 	    $(foreach p,$(PACKAGES),--editable $(SRC)/$(p))
 	@touch $@
