@@ -61,7 +61,7 @@ def test_the_stand_in_has_the_calls_of_the_library():
 @pytest.fixture(scope='class')
 def states(with_stand_in, start_node, observer):
     states = observer.listen(contract.JOINT_STATES, depth=10_000)
-    start_node('panda_bridge_node', hostname='here', command_timeout=0.5)  # a busy machine is no silence
+    start_node('panda_bridge_node', hostname='here', command_timeout=1.0)  # a busy machine is no silence
     observer.spin(lambda: len(states) > 100)
     return states
 
@@ -76,17 +76,13 @@ def commands(states, observer):
 class TestWiring:
     """The bridge on the stand-in."""
 
-    def enable(self, observer, data=True):
-        return observer.call(SetBool, 'panda_bridge_node/enable', SetBool.Request(data=data))
+    def enable(self, observer, data=True, beside=lambda: None):
+        return observer.call(SetBool, 'panda_bridge_node/enable', SetBool.Request(data=data), beside=beside)
 
     def enable_beside(self, observer, commands, torque):
         """Enable while torques come."""
-        for _ in range(50):
-            commands.publish(Float64MultiArray(data=torque))
-            response = self.enable(observer)
-            if response.success:
-                return
-        pytest.fail(response.message)
+        response = self.enable(observer, beside=lambda: commands.publish(Float64MultiArray(data=torque)))
+        assert response.success, response.message
 
     def send(self, observer, commands, torque, until):
         """Torques again and again."""
@@ -108,8 +104,8 @@ class TestWiring:
         assert not any(states[-1].effort)
 
     def test_enabled_it_applies_torques_until_they_fall_silent(self, observer, states, commands):
-        self.enable_beside(observer, commands, [0.0] * 6 + [0.01])
-        self.send(observer, commands, [0.0] * 6 + [0.01], lambda: states[-1].effort[6] == 0.01)
+        self.enable_beside(observer, commands, [0.0] * 6 + [0.001])
+        self.send(observer, commands, [0.0] * 6 + [0.001], lambda: states[-1].effort[6] == 0.001)
         observer.spin(lambda: not any(states[-1].effort), what='silence ends the control')
 
     def test_a_reflex_ends_the_control_until_recovery(self, observer, states, commands):

@@ -162,15 +162,17 @@ class Observer:
         while time.monotonic() < deadline:
             self._serve(0.01)
 
-    def call(self, service_type: type, name: str, request: Any, timeout: float = 20.0) -> Any:
-        """Call a service and give its response."""
+    def call(self, service_type: type, name: str, request: Any, timeout: float = 20.0,
+             beside: Callable[[], Any] = lambda: None) -> Any:
+        """Call a service and give its response; ``beside()`` is called again and again until that is there."""
         client = self.node.create_client(service_type, name)
         deadline = time.monotonic() + timeout
         while not client.service_is_ready():
             assert time.monotonic() < deadline, f'no service {name}'
+            beside()
             self._serve(0.01)
         future = client.call_async(request)
-        self.spin(future.done, timeout, f'response of {name}')
+        self.spin(lambda: beside() or future.done(), timeout, f'response of {name}')
         self.node.destroy_client(client)
         return future.result()
 

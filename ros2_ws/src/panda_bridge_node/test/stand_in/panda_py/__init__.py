@@ -8,7 +8,7 @@ import time
 from types import SimpleNamespace
 
 import numpy as np
-from shared_control.world.ball_on_tray import BallOnTrayWorld
+from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
 from shared_control.world.effort_panda import EffortPanda, Mode
 
 from . import controllers
@@ -24,7 +24,8 @@ class Panda:
     def __init__(self, hostname):
         if hostname == 'nobody':
             raise RuntimeError('libfranka: Connection to FCI refused.')
-        self._robot = EffortPanda(BallOnTrayWorld())
+        # With next to nothing on the tray the arm stays where it is under zero torque.
+        self._robot = EffortPanda(BallOnTrayWorld(Ball(mass=1e-6)))
         self._began = time.monotonic()
         self._ticks = 0
         self._controller = None
