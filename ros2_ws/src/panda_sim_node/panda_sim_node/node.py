@@ -26,6 +26,8 @@ from .tick_times import TickTimes
 PERIOD_NS = round(CONTROL_PERIOD * 1e9)
 REPEAT_AFTER = 0.1
 """A tick that nobody answers is published again after this, s."""
+STANDS_STILL_AFTER = 1.0
+"""A controller that has not answered for this long is away, s."""
 LAG_GIVEN_UP = 0.25
 """A paced run that is this far behind the wall clock no longer tries to catch up, s."""
 
@@ -121,21 +123,29 @@ class PandaSimNode:
         self._tick += 1
 
     def _await_torque(self, stop: Stop) -> np.ndarray | None:
-        """The torque for this tick; None when the node is to stop."""
+        """The torque for this tick; None when the node is to stop or was paused meanwhile."""
         waited = 0.0
-        while not stop.requested:
+        while not (stop.requested or self._paused):
             message = self._commands.wait(REPEAT_AFTER)
             torque = None if message is None else self._commands.read(message)
             if torque is not None:
                 return torque
             if message is None:
                 waited += REPEAT_AFTER
+                if waited >= STANDS_STILL_AFTER:
+                    self._stand_still(waited)
                 self._publish()
-                if waited >= 1.0:
-                    self.node.get_logger().warning(
-                        f'no torque on {self._commands.topic_name} for {waited:.1f} s: the simulation stands '
-                        'still until torque_ctrl_node answers', throttle_duration_sec=5.0)
         return None
+
+    def _stand_still(self, waited: float) -> None:
+        """Without a controller the node answers, but time does not go on."""
+        self.node.get_logger().warning(
+            f'no torque on {self._commands.topic_name} for {waited:.1f} s: the simulation stands still until '
+            'torque_ctrl_node answers', throttle_duration_sec=5.0)
+        if self._tick % TICKS_PER_ACTION == 0:
+            self._between_actions()
+        if self._diagnostics.due():
+            self._report()
 
     def _pace(self) -> None:
         self._deadline += CONTROL_PERIOD

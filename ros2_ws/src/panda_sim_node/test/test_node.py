@@ -101,6 +101,8 @@ class TestLockstepAnsweredByHand:
         node = start_node('panda_sim_node', paced=False)
         observer.spin(lambda: len(states) >= 3, what='the first tick, again and again')
         assert len(set(stamps_ms(states))) == 1
+        pause(observer, True)  # it answers without a controller
+        pause(observer, False)
         observer.spin(lambda: commands.get_subscription_count() == 1)
         bad = ([0.0] * 6, [0.0] * 6 + [float('nan')])
         for data in bad:
