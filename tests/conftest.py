@@ -1,15 +1,9 @@
 """Fixtures of this folder: whole sessions in processes of their own, in a terminal or without one."""
 
-import fcntl
 import json
-import os
-import pty
 import signal
-import struct
 import subprocess
 import sys
-import termios
-import threading
 import time
 from pathlib import Path
 
@@ -18,6 +12,7 @@ from shared_control.learning.episode_table import read_rows
 from shared_control_bringup import parameters
 from shared_control_ros.processes import leave_with_the_parent
 from shared_control_ros.testing import *  # noqa: F403
+from shared_control_ros.testing_terminal import Terminal
 
 COMMAND = [sys.executable, '-m', 'shared_control', 'session']
 
@@ -55,28 +50,13 @@ class Session:
             self.process.stdout.close()
 
 
-class TerminalSession(Session):
-    """The same in a terminal of 80 x 24."""
+class TerminalSession(Session, Terminal):
+    """The same in a terminal."""
 
     def __init__(self, arguments: list[str]):
-        self._master, terminal = pty.openpty()
-        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
-        self.shown = ''
-        super().__init__(arguments, stdin=terminal, stdout=terminal, stderr=terminal, start_new_session=False,
-                         preexec_fn=lambda: os.login_tty(terminal))
-        os.close(terminal)
-        self._reader = threading.Thread(target=self._read)
-        self._reader.start()
-
-    def _read(self) -> None:
-        try:
-            while data := os.read(self._master, 65536):
-                self.shown += data.decode(errors='replace')
-        except OSError:
-            pass  # the last process has left the terminal
-
-    def type(self, keys: bytes) -> None:
-        os.write(self._master, keys)
+        Terminal.__init__(self)
+        Session.__init__(self, arguments, **self.popen_options())
+        self.watch()
 
     def expect(self, text: str, timeout: float = 120.0) -> None:
         """Wait until ``text`` is shown from now on."""
@@ -87,9 +67,8 @@ class TerminalSession(Session):
             time.sleep(0.02)
 
     def close(self) -> None:
-        super().close()
-        self._reader.join(5)
-        os.close(self._master)
+        Session.close(self)
+        Terminal.close(self)
 
 
 @pytest.fixture

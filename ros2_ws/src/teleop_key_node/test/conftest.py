@@ -1,14 +1,9 @@
 """The node as a process of its own, on a DDS domain of its own, without and with a terminal."""
 
-import fcntl
 import os
-import pty
 import signal
-import struct
 import subprocess
 import sys
-import termios
-import threading
 import time
 from collections.abc import Callable, Iterator
 
@@ -19,6 +14,7 @@ from sensor_msgs.msg import Joy
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.testing import domain_id
+from shared_control_ros.testing_terminal import Terminal
 from std_msgs.msg import Int32, String
 
 _COMMAND = [sys.executable, '-m', 'teleop_key_node.node', '--ros-args']
@@ -131,43 +127,22 @@ class Process:
             self.popen.stdout.close()
 
 
-class TerminalProcess(Process):
-    """The node in a terminal of 80 x 24."""
+class TerminalProcess(Process, Terminal):
+    """The node in a terminal."""
 
     def __init__(self, *parameters: str):
-        self.master, slave = pty.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
-        self.modes_before = termios.tcgetattr(self.master)
-        self.shown = ''
-        super().__init__(
-            *parameters, start_new_session=False, preexec_fn=lambda: os.login_tty(slave), stdin=slave,
-            stdout=slave, stderr=slave)
-        os.close(slave)
-        self._reader = threading.Thread(target=self._read)
-        self._reader.start()
-
-    def _read(self) -> None:
-        try:
-            while data := os.read(self.master, 65536):
-                self.shown += data.decode(errors='replace')
-        except OSError:
-            pass  # the last process has left the terminal
-
-    @property
-    def modes(self) -> list:
-        return termios.tcgetattr(self.master)
-
-    def type(self, keys: bytes) -> None:
-        os.write(self.master, keys)
+        Terminal.__init__(self)
+        self.modes_before = self.modes
+        Process.__init__(self, *parameters, **self.popen_options())
+        self.watch()
 
     def expect(self, text: str, after: int = 0) -> None:
         """Wait until ``text`` is on the screen."""
         _until(lambda: text in self.shown[after:], f'{text!r} on the screen')
 
     def close(self) -> None:
-        super().close()
-        self._reader.join(2.0)
-        os.close(self.master)
+        Process.close(self)
+        Terminal.close(self)
 
 
 @pytest.fixture

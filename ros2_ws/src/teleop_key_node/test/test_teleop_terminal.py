@@ -94,7 +94,7 @@ def test_the_screen_shows_the_lesson(graph, start_in_terminal):
 
     # A resize is seen at the next frame.
     before = len(terminal.shown)
-    termios.tcsetwinsize(terminal.master, (16, 60))
+    terminal.resize(16, 60)
     terminal.expect('\x1b[2J', after=before)
     terminal.expect('\x1b[16;1H', after=before)
     assert '\x1b[17;1H' not in terminal.shown[terminal.shown.rindex('\x1b[2J'):]

@@ -33,7 +33,7 @@ def test_order_follows_the_names_not_the_indices():
     (data(JOINT_NAMES, [0.0] * 6 + [float('nan')]), 'not finite'),
     (data()[:60], 'no JointState'),
     (b'', 'no JointState'),
-])
+], ids=['a joint missing', 'positions missing', 'not finite', 'cut', 'empty'])
 def test_what_is_missing_is_named(bad, named):
     reader = JointStateReader()
     for _ in range(2):
