@@ -18,6 +18,9 @@ from .serialized import STAMP_BYTES
 class WireLayout:
     """Where the arrays of a message lie among its bytes.
 
+    CDR aligns numbers, and what is between them is whatever was in the sender's memory: every process has its own
+    padding, which :meth:`learn` learns to overlook.
+
     Args:
         message: one that is as all are, but for its stamp and for the values in its arrays.
         arrays: the names of its ``float64[]`` fields.
@@ -31,22 +34,37 @@ class WireLayout:
         data = serialize_message(marked)
         self._size = len(data)
         self._arrays = [(data.index(values.tobytes()), len(values)) for values in marks.values()]
-        changing = [slice(start, start + 8 * count) for start, count in self._arrays]
+        mask = bytearray(b'\xff' * self._size)
+        for start, count in self._arrays:
+            mask[start:start + 8 * count] = bytes(8 * count)
         if hasattr(message, 'header'):
-            changing.append(STAMP_BYTES)
-        self._fixed = []
-        begin = 0
-        for part in sorted([*changing, slice(len(data), len(data))], key=lambda part: part.start):
-            self._fixed.append((slice(begin, part.start), data[begin:part.start]))
-            begin = part.stop
+            mask[STAMP_BYTES] = bytes(STAMP_BYTES.stop - STAMP_BYTES.start)
+        # A single integer: bytes are masked and compared within a microsecond.
+        self._mask = _integer(mask)
+        self._fixed = _integer(data) & self._mask
 
     def fits(self, data: bytes) -> bool:
         """Whether ``data`` is such a message."""
-        return len(data) == self._size and all(data[part] == expected for part, expected in self._fixed)
+        return len(data) == self._size and _integer(data) & self._mask == self._fixed
+
+    def learn(self, data: bytes) -> bool:
+        """Overlook from now on in what ``data`` differs, which is such a message as its reader has found out.
+
+        Returns: whether it has the same size; otherwise it has another layout.
+        """
+        if len(data) != self._size:
+            return False
+        self._mask &= ~(_integer(data) ^ self._fixed)
+        self._fixed &= self._mask
+        return True
 
     def views(self, data: bytes | bytearray) -> list[np.ndarray]:
         """The arrays, in the order of their names, as they lie in ``data``: writable where ``data`` is."""
         return [np.frombuffer(data, np.float64, count, start) for start, count in self._arrays]
+
+
+def _integer(data: bytes | bytearray) -> int:
+    return int.from_bytes(data, 'little')
 
 
 def read_message(data: bytes, message_type: type) -> Any:

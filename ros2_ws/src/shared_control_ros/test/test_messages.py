@@ -62,6 +62,21 @@ def test_a_layout_fits_other_numbers_and_nothing_else():
     assert not layout.fits(b'')
 
 
+def test_a_layout_learns_to_overlook_the_padding_of_another_process():
+    layout = WireLayout(STATE, ('position', 'velocity', 'effort'))
+    foreign = bytearray(serialize_message(STATE))
+    for name in JOINT_NAMES:  # 13 bytes with the closing zero: three more up to the next length
+        end = foreign.index(name.encode() + b'\0') + len(name) + 1
+        foreign[end:end + 3] = bytes(255 - byte for byte in foreign[end:end + 3])
+    assert deserialize_message(bytes(foreign), JointState) == STATE
+    assert not layout.fits(bytes(foreign))
+    assert layout.learn(bytes(foreign))
+    assert layout.fits(bytes(foreign)) and layout.fits(serialize_message(STATE))
+    renamed = bytes(foreign).replace(b'panda_joint4', b'panda_jointX')
+    assert not layout.fits(renamed)
+    assert not layout.learn(renamed + bytes(8)), 'another size is another layout'
+
+
 def test_bytes_that_are_no_message_are_refused():
     with pytest.raises(ValueError, match='no JointState'):
         read_message(serialize_message(STATE)[:40], JointState)

@@ -13,7 +13,7 @@ FIELDS = ('position', 'velocity', 'effort')
 class JointStateReader:
     """Picks ``panda_joint1..7`` out of serialized joint states by name, whatever their order.
 
-    States that name just these joints in this order are read as the first such one was laid out.
+    States that name just these joints in this order are read as the last such one was laid out.
     """
 
     def __init__(self) -> None:
@@ -42,8 +42,14 @@ class JointStateReader:
             if len(getattr(message, name)) != count:
                 raise ValueError(f'{name} has {len(getattr(message, name))} values for {count} joints')
         if list(message.name) == list(JOINT_NAMES):
-            self._layout = WireLayout(message, FIELDS)
+            self._remember(message, data)
         return tuple(np.array(getattr(message, name))[order] for name in FIELDS)
+
+    def _remember(self, message: JointState, data: bytes) -> None:
+        """What is laid out like ``data`` need not be taken apart from now on."""
+        if self._layout is None or not self._layout.learn(data):
+            self._layout = WireLayout(message, FIELDS)
+            self._layout.learn(data)
 
     @staticmethod
     def _find(names: list[str]) -> list[int]:
