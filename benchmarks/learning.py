@@ -70,10 +70,14 @@ BY_DEFAULT = [name for name in CONDITIONS if not name.startswith('thesis')]
 def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) -> dict[str, Any]:
     """One run, and what became of its policy."""
     done = folder / 'result.json'
-    result = json.loads(done.read_text()) if done.exists() else taught(CONDITIONS[name], seed, folder, limit)
+    if done.exists():
+        result = json.loads(done.read_text())
+    else:
+        result = taught(CONDITIONS[name], seed, folder, limit)
+        done.write_text(json.dumps(result, indent=2) + '\n')
     if retention and result['skilled'] is not None and 'retention' not in result:
         result['retention'] = retained(folder / POLICY_NAME, seed)
-    done.write_text(json.dumps(result, indent=2) + '\n')
+        done.write_text(json.dumps(result, indent=2) + '\n')
     return result
 
 
@@ -134,16 +138,18 @@ def median_with_interval(values: list[float]) -> list[float]:
 
 def describe(name: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
     """The row of a condition."""
-    skilled = [float('inf') if r['skilled'] is None else float(r['skilled']) for r in runs]
     position, velocity = ([1e3 * r[key] for r in runs] for key in ('position_error', 'velocity'))
     row = {
-        'condition': name, 'seeds': len(runs), 'censored': int(np.isinf(skilled).sum()),
-        'episodes_to_skilled': median_with_interval(skilled), 'slowest': max(skilled),
+        'condition': name, 'seeds': len(runs), 'successes': median_with_interval([r['successes'] for r in runs]),
         'position_error_mm': median_with_interval(position), 'position_error_sd_mm': float(np.std(position)),
         'velocity_mm_s': median_with_interval(velocity), 'velocity_sd_mm_s': float(np.std(velocity)),
         'intervention_first': float(np.mean([r['intervention_rates'][0] for r in runs])),
         'intervention_last': float(np.mean([r['intervention_rates'][-1] for r in runs])),
         'seconds': median_with_interval([r['seconds'] for r in runs])}
+    if CONDITIONS[name].until_skilled:
+        skilled = [float('inf') if r['skilled'] is None else float(r['skilled']) for r in runs]
+        row |= {'episodes_to_skilled': median_with_interval(skilled), 'slowest': max(skilled),
+                'censored': int(np.isinf(skilled).sum())}
     if any('retention' in r for r in runs):
         kept = [all(r['retention']) for r in runs if 'retention' in r]
         row['retained'] = f'{sum(kept)} of {len(kept)}'
@@ -156,9 +162,12 @@ def tell(row: dict[str, Any]) -> None:
         median, low, high = row[key]
         return f'{median:.4g} [{low:.4g}, {high:.4g}]'
 
-    print(f'{row["condition"]}: {row["seeds"]} seeds, {row["censored"]} never skilled; episodes to skilled '
-          f'{interval("episodes_to_skilled")}, slowest {row["slowest"]:g}; at the end |position error| '
-          f'{interval("position_error_mm")} mm (SD {row["position_error_sd_mm"]:.2g}), |velocity| '
+    episodes = f'{CONDITIONS[row["condition"]].episodes} episodes each'
+    if 'censored' in row:
+        episodes = (f'{row["censored"]} never skilled; episodes to skilled {interval("episodes_to_skilled")}, slowest '
+                    f'{row["slowest"]:g}')
+    print(f'{row["condition"]}: {row["seeds"]} seeds, {episodes}; at the end {interval("successes")} of 20 succeed, '
+          f'|position error| {interval("position_error_mm")} mm (SD {row["position_error_sd_mm"]:.2g}), |velocity| '
           f'{interval("velocity_mm_s")} mm/s (SD {row["velocity_sd_mm_s"]:.2g}); human holds '
           f'{row["intervention_first"]:.0%} of the first, {row["intervention_last"]:.0%} of the last episode; '
           f'{interval("seconds")} s', flush=True)
