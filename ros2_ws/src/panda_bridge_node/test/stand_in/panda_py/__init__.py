@@ -47,6 +47,8 @@ class Panda:
     def start_controller(self, controller):
         controller.torque = np.zeros(7)
         self._controller = controller
+        self._robot.tick(controller.torque)  # the control begins with zero, whatever is set next
+        self._ticks += 1
 
     def stop_controller(self):
         self._controller = None
