@@ -7,6 +7,8 @@ import sys
 
 import pytest
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.expected_conditions import alert_is_present
+from selenium.webdriver.support.wait import WebDriverWait
 from shared_control.session.testing import lesson, record
 from shared_control_ros import contract
 from shared_control_ros.processes import leave_with_the_parent
@@ -172,7 +174,7 @@ class TestASessionOnThePage:
 
     def test_stop_ends_the_session_and_keeps_it(self, browser, session):
         browser.part('stop').click()
-        browser.driver.switch_to.alert.accept()
+        WebDriverWait(browser.driver, 30).until(alert_is_present()).accept()
         said, _ = session[0].communicate(timeout=60)
         assert session[0].returncode == 130
         assert 'Stopped before the end' in said and 'Traceback' not in said
