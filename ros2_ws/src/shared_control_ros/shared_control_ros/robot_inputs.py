@@ -24,13 +24,17 @@ class TorqueInput(Polled):
         """Torques of a serialized command, (7,), N m; None when it is unusable."""
         fits = self._layout.fits(data)
         try:
-            torque = self._layout.views(data)[0] if fits else np.array(read_message(data, Float64MultiArray).data)
+            if fits:
+                torque = self._layout.views(data)[0]
+            else:
+                message = read_message(data, Float64MultiArray)
+                torque = np.array(message.data)
         except ValueError as error:
             self._refuse(str(error))
             return None
         if torque.shape == (DOF,) and math.isfinite(torque.sum()):
             if not fits:
-                self._layout.learn(data)
+                self._layout.learn(message, data)
             return torque
         self._refuse(f'expected {DOF} finite torques, got {torque[:10].tolist()}')
         return None

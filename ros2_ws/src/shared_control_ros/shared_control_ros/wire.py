@@ -27,6 +27,8 @@ class WireLayout:
     """
 
     def __init__(self, message: Any, arrays: Sequence[str]):
+        self._names = arrays
+        self._blank = self._blanked(message)
         marked = copy.deepcopy(message)
         marks = {name: 1e3 * number + np.arange(len(getattr(message, name))) for number, name in enumerate(arrays, 1)}
         for name, values in marks.items():
@@ -47,16 +49,25 @@ class WireLayout:
         """Whether ``data`` is such a message."""
         return len(data) == self._size and _integer(data) & self._mask == self._fixed
 
-    def learn(self, data: bytes) -> bool:
-        """Overlook from now on in what ``data`` differs, which is such a message as its reader has found out.
+    def learn(self, message: Any, data: bytes) -> bool:
+        """Overlook the padding of ``data``, which ``message`` was read from, from now on.
 
-        Returns: whether it has the same size; otherwise it has another layout.
+        Returns: whether it has this layout: whether it differs in stamp, values and padding alone.
         """
-        if len(data) != self._size:
+        if len(data) != self._size or self._blanked(message) != self._blank:
             return False
         self._mask &= ~(_integer(data) ^ self._fixed)
         self._fixed &= self._mask
         return True
+
+    def _blanked(self, message: Any) -> Any:
+        """A copy without stamp and values."""
+        blank = copy.deepcopy(message)
+        for name in self._names:
+            setattr(blank, name, [0.0] * len(getattr(message, name)))
+        if hasattr(message, 'header'):
+            blank.header.stamp = type(message.header.stamp)()
+        return blank
 
     def views(self, data: bytes | bytearray) -> list[np.ndarray]:
         """The arrays, in the order of their names, as they lie in ``data``: writable where ``data`` is."""

@@ -70,11 +70,13 @@ def test_a_layout_learns_to_overlook_the_padding_of_another_process():
         foreign[end:end + 3] = bytes(255 - byte for byte in foreign[end:end + 3])
     assert deserialize_message(bytes(foreign), JointState) == STATE
     assert not layout.fits(bytes(foreign))
-    assert layout.learn(bytes(foreign))
+    assert layout.learn(STATE, bytes(foreign))
     assert layout.fits(bytes(foreign)) and layout.fits(serialize_message(STATE))
     renamed = bytes(foreign).replace(b'panda_joint4', b'panda_jointX')
     assert not layout.fits(renamed)
-    assert not layout.learn(renamed + bytes(8)), 'another size is another layout'
+    assert not layout.learn(STATE, renamed + bytes(8)), 'another size is another layout'
+    assert not layout.learn(deserialize_message(renamed, JointState), renamed), 'names are no padding'
+    assert not layout.fits(renamed)
 
 
 def test_bytes_that_are_no_message_are_refused():

@@ -47,9 +47,9 @@ class JointStateReader:
 
     def _remember(self, message: JointState, data: bytes) -> None:
         """What is laid out like ``data`` need not be taken apart from now on."""
-        if self._layout is None or not self._layout.learn(data):
+        if self._layout is None or not self._layout.learn(message, data):
             self._layout = WireLayout(message, FIELDS)
-            self._layout.learn(data)
+            self._layout.learn(message, data)
 
     @staticmethod
     def _find(names: list[str]) -> list[int]:
