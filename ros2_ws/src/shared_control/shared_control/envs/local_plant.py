@@ -5,8 +5,7 @@ from typing import Protocol
 from ..control.computed_torque import ComputedTorqueController
 from ..control.moments import sum_moments
 from ..robot.model import PandaModel
-from ..task.balance import BallStarts
-from ..task.settings import DEFAULT_TASK
+from ..task.balance import BALL_START_RANGE, BallStarts
 from ..world.ball_on_tray import Ball, BallOnTrayWorld
 from .plant import CONTROL_PERIOD, TICKS_PER_ACTION, PlantState
 
@@ -32,7 +31,7 @@ class LocalPlant:
     """
 
     def __init__(self, person: Person | None = None, moment_limit: float = 20.0, ball: Ball = Ball(),
-                 ball_start_range: tuple[float, float] = DEFAULT_TASK.ball_start_range):
+                 ball_start_range: tuple[float, float] = BALL_START_RANGE):
         self.world = BallOnTrayWorld(ball, CONTROL_PERIOD)
         self.controller = ComputedTorqueController(PandaModel(), dt=CONTROL_PERIOD)
         self._person = person

@@ -23,7 +23,7 @@ from .episode_ppo import ACTION_SPACE, OBSERVATION_SPACE, EpisodePPO
 from .learn import make_learner
 from .presets import PRESETS, CoachingSettings, PpoSettings, Preset
 
-FORMAT = 'shared-control policy 2'
+FORMAT = 'shared-control policy 3'
 SUFFIX = '.safetensors'
 POLICY_NAME = f'policy{SUFFIX}'
 """Of the file in a learner's folder."""

@@ -19,7 +19,7 @@ def run_randomized(act: Act, task: TaskSettings = DEFAULT_TASK, episodes: int = 
         seed: of the ball starts.
         hooks: are told of each episode.
     """
-    env = RecordingEnv(LocalPlant(None, task.moment_limit, ball_start_range=task.ball_start_range), test_settings(task))
+    env = RecordingEnv(LocalPlant(None, task.moment_limit), test_settings(task))
     try:
         evaluate(act, env, episodes, seed, hooks)
     finally:

@@ -10,6 +10,9 @@ from .settings import DEFAULT_TASK, TaskSettings
 OBSERVATION_BOUND = 20.0
 """Observations are clipped to this; a ball on the tray stays within 3."""
 
+BALL_START_RANGE = (-0.6, -0.3)
+"""Where the ball is dropped, x in the base frame, m (appendix)."""
+
 
 @dataclass(frozen=True)
 class BalanceState:
@@ -64,13 +67,14 @@ class BalanceTask:
 
 
 class BallStarts:
-    """Where the ball is dropped, episode after episode: uniform in the task's range.
+    """Where the ball is dropped, episode after episode: uniform in a range.
 
     Args:
         seed: the same seed gives the same starts, here, in the simulator node and in the environment.
+        start_range: lowest and highest x in the base frame, m.
     """
 
-    def __init__(self, seed: int | None = None, start_range: tuple[float, float] = DEFAULT_TASK.ball_start_range):
+    def __init__(self, seed: int | None = None, start_range: tuple[float, float] = BALL_START_RANGE):
         self._range = start_range
         self.seed(seed)
 

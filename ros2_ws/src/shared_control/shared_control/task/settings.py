@@ -12,8 +12,6 @@ class TaskSettings:
 
     episode_seconds: float = 15.0
     """s (3.1)"""
-    ball_start_range: tuple[float, float] = (-0.6, -0.3)
-    """Where the ball is dropped, x in the base frame, m (appendix)."""
     fallen_below: float = 0.836
     """Height under which the ball has fallen, m (appendix)."""
     fall_reward: float = -5000.0
