@@ -19,6 +19,7 @@ from shared_control_ros.joints import joint_positions
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.watching.lesson import Lesson
 
 from .key_publisher import KeyPublisher
 
@@ -37,13 +38,10 @@ class SimTutorNode:
         self._balls = Polled(node, contract.BALL, depth=10)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
         self._human = Polled(node, contract.HUMAN_WRENCH)
-        self._phases = Polled(node, contract.PHASE, qos_profile=contract.PHASE.qos)
-        self._episodes = Polled(node, contract.EPISODE, qos_profile=contract.EPISODE.qos)
+        self._lesson = Lesson(node)
         self._keys = KeyPublisher(node)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
-        self._phase = ''
-        self._episode = 0
         self._stamp_ns = 0
         self._started_ns = 0
         self._q: np.ndarray | None = None
@@ -61,7 +59,7 @@ class SimTutorNode:
                 self._background.poll()
             if self._diagnostics.due():
                 self._background.poll()
-                self._diagnostics.publish({}, phase=self._phase, presses=self._keys.presses)
+                self._diagnostics.publish({}, phase=self._lesson.phase or '', presses=self._keys.presses)
 
     def _watch(self, ball: contract.Odometry) -> None:
         """One look at the tray."""
@@ -77,7 +75,7 @@ class SimTutorNode:
                 self._m_y_human = wrench.wrench.torque.y
             else:
                 self._complain(self._human, f'torque.y is {wrench.wrench.torque.y}')
-        if self._phase != 'teach' or self._q is None:
+        if self._lesson.phase != 'teach' or self._q is None:
             return
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
         if not math.isfinite(position.x + velocity.x):
@@ -95,13 +93,9 @@ class SimTutorNode:
 
     def _follow_lesson(self, stamp_ns: int) -> None:
         """Begin anew with every episode, and when the simulator was started anew."""
-        before = self._phase, self._episode
-        while (message := self._phases.take()) is not None:
-            self._phase = message.data
-        while (message := self._episodes.take()) is not None:
-            self._episode = message.data
-        if (self._phase, self._episode) != before or stamp_ns < self._stamp_ns:
-            self._tutor.reset(episode_seed(self._seed, self._episode), self._episode)
+        if self._lesson.update() or stamp_ns < self._stamp_ns:
+            episode = self._lesson.episode or 0
+            self._tutor.reset(episode_seed(self._seed, episode), episode)
             self._started_ns = stamp_ns
         self._stamp_ns = stamp_ns
 

@@ -99,6 +99,14 @@ def test_reports_itself_and_lets_go_when_it_leaves(start_node, observer):
     assert not np.any(heard[-1].buttons)
 
 
+def test_goes_on_when_it_is_told_of_an_impossible_episode(start_node, observer):
+    node = start_node('sim_tutor_node', profile='low')
+    scene = Scene(observer)
+    scene.enter('teach', episode=-1)
+    assert scene.show(0.15, 1.5)[0] is Key.LEFT
+    assert 'dropped a message on /training/episode: there is no episode -1' in node.log()
+
+
 def test_unknown_profile_is_one_clear_line(start_node):
     node = start_node('sim_tutor_node', profile='genius')
     assert node.process.wait(20) == 2

@@ -10,6 +10,7 @@ class Lesson:
     """Phase and episode, from /training/phase and /training/episode."""
 
     def __init__(self, node: Node):
+        self._log = node.get_logger()
         self._phases = Polled(node, contract.PHASE, qos_profile=contract.qos_latched())
         self._episodes = Polled(node, contract.EPISODE, qos_profile=contract.qos_latched())
         self.phase: str | None = None
@@ -29,6 +30,11 @@ class Lesson:
         while (message := self._phases.take()) is not None:
             self.phase = message.data
         while (message := self._episodes.take()) is not None:
+            if message.data < 0:
+                self._log.error(
+                    f'dropped a message on {self._episodes.topic_name}: there is no episode {message.data}',
+                    throttle_duration_sec=1.0)
+                continue
             if self.episode is not None and message.data < self.episode:
                 self.restarts += 1
             self.episode = message.data
