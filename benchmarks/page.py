@@ -1,8 +1,8 @@
 """The page beside the control loop: from a key in the browser to M_yh, pictures a second, and what it costs the loop.
 
-The nodes run as in a session (the control loop on the last core, the others at niceness 10 on the rest), the agent in
+The nodes run as in a session (the control loop on the last core, the others on the rest), the agent in
 practice: first without a browser, then with Chromium showing the page. The browser draws by software, in a small
-window, at the niceness of the nodes beside the loop; a computer with a graphics card draws for nothing.
+window; a computer with a graphics card draws for nothing.
 """
 
 import json
@@ -22,7 +22,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from selenium.webdriver.common.keys import Keys
 from shared_control_bringup import parameters
-from shared_control_bringup.node_process import NICENESS, NodeProcess
+from shared_control_bringup.node_process import NodeProcess
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from teach_page_node.testing import Browser
@@ -133,7 +133,7 @@ def measure() -> dict[str, Any]:
         ear = Ear(domain)
         time.sleep(3.0)
         without = ear.real_time_factor(SECONDS)
-        browser = Browser(*WINDOW, niceness=NICENESS)
+        browser = Browser(*WINDOW)
         try:
             browser.open(address)
             time.sleep(8.0)  # the scene has found its resolution

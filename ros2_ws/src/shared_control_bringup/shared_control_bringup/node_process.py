@@ -14,7 +14,7 @@ CONTROL_LOOP = ('panda_sim_node', 'torque_ctrl_node')
 LOOP_PRIORITY = 50
 """Real-time priority of the control loop (SCHED_FIFO), where `ulimit -r` allows it; that of ros2_control."""
 NICENESS = 10
-"""Of the nodes outside the control loop."""
+"""Of the nodes outside the control loop, on a machine with one core."""
 UNUSABLE = 2
 """Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
 
@@ -70,10 +70,10 @@ class NodeProcess:
             if others and self._in_real_time:
                 with suppress(PermissionError):
                     os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(LOOP_PRIORITY))
+        elif others:
+            os.sched_setaffinity(0, others)
         else:
             os.nice(NICENESS)
-            if others:
-                os.sched_setaffinity(0, others)
 
     def wait_ready(self, seconds: float) -> None:
         """Wait until it says that it is ready, has ended, or the time is over."""

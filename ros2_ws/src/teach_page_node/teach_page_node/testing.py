@@ -1,6 +1,5 @@
 """The page in a real browser, for tests and measurements: headless Chromium, drawing by software."""
 
-import os
 import shutil
 import tempfile
 import time
@@ -26,13 +25,12 @@ class Browser:
 
     Args:
         width, height: of its window, pixels.
-        niceness: of all its processes.
 
     Raises:
         FileNotFoundError: there is no Chromium, or no chromedriver.
     """
 
-    def __init__(self, width: int = 1000, height: int = 700, niceness: int = 0):
+    def __init__(self, width: int = 1000, height: int = 700):
         browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
         driver = shutil.which('chromedriver')
         if browser is None or driver is None:
@@ -43,8 +41,7 @@ class Browser:
         for option in (*_OPTIONS, f'--user-data-dir={self._profile.name}', f'--window-size={width},{height}'):
             options.add_argument(option)
         options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
-        service = Service(driver, popen_kw={'preexec_fn': lambda: os.nice(niceness)})
-        self.driver = Chrome(options=options, service=service)
+        self.driver = Chrome(options=options, service=Service(driver))
 
     def open(self, address: str) -> None:
         """Open the page and wait until it shows something."""
