@@ -1,8 +1,8 @@
 """The page beside the control loop: from a key in the browser to M_yh, pictures a second, and what it costs the loop.
 
-The nodes run as in a session (the control loop on the last core, the others on the rest), the agent in
-practice: first without a browser, then with Chromium showing the page. The browser draws by software, in a small
-window; a computer with a graphics card draws for nothing.
+The nodes run as in a session (the control loop on the last core, the others on the rest), the agent in practice: first
+without a browser, then with Chromium showing the page. The browser draws by software, in a small window; a computer
+with a graphics card draws for nothing.
 """
 
 import json
