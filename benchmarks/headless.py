@@ -8,8 +8,8 @@ import statistics
 import time
 from typing import Any
 
-from shared_control.envs.local_plant import LocalPlant
-from shared_control.world.ball_on_tray import BallOnTrayWorld
+from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.local_plant import LocalPlant
 
 ROUNDS = 7
 TICKS = 4000

@@ -21,17 +21,17 @@ from typing import Any
 
 import numpy as np
 from scipy.stats import bootstrap
-from shared_control.envs.balance_env import BalanceEnv
-from shared_control.envs.local_plant import LocalPlant
-from shared_control.human.profiles import profile
-from shared_control.learning.evaluate import Evaluation, test_settings
-from shared_control.learning.hooks import Hooks
-from shared_control.learning.learn import learn
-from shared_control.learning.policy_file import POLICY_NAME, load_policy
-from shared_control.learning.presets import preset
-from shared_control.learning.record import EpisodeRecord
-from shared_control.learning.training import TEST_SEED, passes_now, train
-from shared_control.protocols.randomized import run_randomized
+from shared_control.env import BalanceEnv
+from shared_control.teaching.profiles import profile
+from shared_control_learning.callbacks import Hooks
+from shared_control_learning.evaluation.evaluate import Evaluation, test_settings
+from shared_control_learning.evaluation.randomized import run_randomized
+from shared_control_learning.learn import learn
+from shared_control_learning.policy_file import POLICY_NAME, load_policy
+from shared_control_learning.presets import preset
+from shared_control_learning.record import EpisodeRecord
+from shared_control_learning.training import TEST_SEED, passes_now, train
+from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
 
 RETENTION_EPISODES = 20

@@ -25,7 +25,7 @@ from shared_control_bringup import parameters
 from shared_control_bringup.node_process import NodeProcess
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
-from teach_page_node.testing import Browser
+from shared_control_testing.page import Browser
 
 NODES = ('torque_ctrl_node', 'panda_sim_node', 'teleop_key_node', 'teach_page_node', 'ppo_agent_node')
 WINDOW = (800, 600)

@@ -12,10 +12,10 @@ import json
 import sys
 from pathlib import Path
 
-from shared_control.human.profiles import profile
-from shared_control.learning.policy_file import load_policy
-from shared_control.learning.presets import preset
-from shared_control.learning.training import train
+from shared_control.teaching.profiles import profile
+from shared_control_learning.policy_file import load_policy
+from shared_control_learning.presets import preset
+from shared_control_learning.training import train
 
 RECORDED = Path(__file__).with_suffix('.json')
 EPISODES = 3

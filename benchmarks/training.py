@@ -3,11 +3,11 @@
 import statistics
 from typing import Any
 
-from shared_control.human.profiles import profile
-from shared_control.learning.hooks import Hooks
-from shared_control.learning.presets import preset
-from shared_control.learning.record import EpisodeRecord
-from shared_control.learning.training import train
+from shared_control.teaching.profiles import profile
+from shared_control_learning.callbacks import Hooks
+from shared_control_learning.presets import preset
+from shared_control_learning.record import EpisodeRecord
+from shared_control_learning.training import train
 
 SEEDS = range(3)
 EPISODES = 40

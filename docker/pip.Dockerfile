@@ -5,7 +5,7 @@ WORKDIR /shared-control
 COPY requirements.txt ./
 RUN pip install --no-cache-dir --requirement requirements.txt
 COPY . ./
-RUN pip install --no-cache-dir --no-deps --no-build-isolation ros2_ws/src/*/ \
+RUN pip install --no-cache-dir --no-deps --no-build-isolation . \
  && useradd --create-home --uid 1000 trainer \
  && chown --recursive 1000 /shared-control
 

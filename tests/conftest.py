@@ -8,11 +8,11 @@ import time
 from pathlib import Path
 
 import pytest
-from shared_control.learning.episode_table import read_rows
 from shared_control_bringup import parameters
+from shared_control_learning.episode_table import read_rows
 from shared_control_ros.processes import leave_with_the_parent
-from shared_control_ros.testing import *  # noqa: F403
-from shared_control_ros.testing_terminal import Terminal
+from shared_control_testing.nodes import *  # noqa: F403
+from shared_control_testing.terminal import Terminal
 
 COMMAND = [sys.executable, '-m', 'shared_control', 'session']
 

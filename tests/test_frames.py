@@ -12,11 +12,11 @@ from builtin_interfaces.msg import Time
 from panda_tray_description import URDF_PATH
 from robot_view_node.transforms import arm_transforms, ball_transform
 from shared_control.robot.model import PandaModel
-from shared_control.world.ball_on_tray import BallOnTrayWorld
 from shared_control_ros import contract
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.stamps import to_ns
 from shared_control_ros.state_publisher import StatePublisher
+from shared_control_sim.bullet import BallOnTrayWorld
 from urdf_parser_py.urdf import URDF
 
 TOLERANCE = 1e-6

@@ -8,8 +8,8 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 from ppo_agent_node.graph_plant import GraphPlant
-from shared_control.envs.balance_env import BalanceEnv
-from shared_control.envs.plant import PlantInterrupted
+from shared_control.env import BalanceEnv
+from shared_control.plant import PlantInterrupted
 from shared_control.robot.limits import JOINT_NAMES, Q_MAX, Q_MIN, QD_MAX, TORQUE_MAX
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_ros import contract

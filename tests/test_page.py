@@ -9,10 +9,10 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import alert_is_present
 from selenium.webdriver.support.wait import WebDriverWait
-from shared_control.session.testing import lesson, record
 from shared_control_ros import contract
 from shared_control_ros.processes import leave_with_the_parent
-from teach_page_node.testing import Browser
+from shared_control_testing.page import Browser
+from shared_control_testing.sessions import lesson, record
 
 pytestmark = pytest.mark.alone
 

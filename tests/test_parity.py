@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from ppo_agent_node.graph_plant import GraphPlant
-from shared_control.envs.balance_env import BalanceEnv
-from shared_control.envs.local_plant import LocalPlant
-from shared_control.envs.plant import TICKS_PER_ACTION
+from shared_control.env import BalanceEnv
+from shared_control.rates import TICKS_PER_ACTION
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.stamps import to_ns
+from shared_control_sim.local_plant import LocalPlant
 
 SEED = 11
 STEPS = 750

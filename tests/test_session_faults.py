@@ -3,8 +3,8 @@
 import os
 import signal
 
-from shared_control.learning.policy_file import read_description
-from shared_control.session.bag import read_bag
+from shared_control_learning.policy_file import read_description
+from shared_control_records.bag.reader import read_bag
 
 NODES = ('panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'sim_tutor_node', 'session_recorder_node',
          'ppo_agent_node')

@@ -3,7 +3,7 @@
 import signal
 
 import pytest
-from shared_control.session.bag import read_bag
+from shared_control_records.bag.reader import read_bag
 
 
 def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summary_of):

@@ -7,9 +7,9 @@ from collections import defaultdict
 import numpy as np
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
-from shared_control.learning.episode_table import read_rows
-from shared_control.learning.policy_file import read_description
-from shared_control.report.bag_report import write_bag_report
+from shared_control_learning.episode_table import read_rows
+from shared_control_learning.policy_file import read_description
+from shared_control_records.session.bag_report import write_bag_report
 from shared_control_ros import contract
 
 

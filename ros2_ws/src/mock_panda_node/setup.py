@@ -10,7 +10,7 @@ setup(
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
     ],
-    install_requires=['shared_control', 'shared_control_ros', 'rclpy', 'numpy'],
+    install_requires=['shared_control', 'shared_control_sim', 'shared_control_ros', 'rclpy', 'numpy'],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='shared-control maintainers',

@@ -16,9 +16,10 @@ setup(
         *[(f'share/{package_name}/{folder}', glob(folder + '/*')) for folder in ('bags', 'launch', 'views')],
     ],
     install_requires=[
-        'shared_control', 'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node',
-        'ppo_agent_node', 'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'teach_page_node',
-        'panda_tray_description', 'pyyaml',
+        'shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records',
+        'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node',
+        'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'teach_page_node', 'panda_tray_description',
+        'pyyaml',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,

@@ -12,7 +12,8 @@ setup(
         ('share/' + package_name, ['package.xml']),
     ],
     install_requires=[
-        'panda_tray_description', 'shared_control', 'shared_control_ros', 'teleop_key_node', 'rclpy', 'nicegui',
+        'panda_tray_description', 'shared_control', 'shared_control_records', 'shared_control_ros',
+        'teleop_key_node', 'rclpy', 'nicegui',
         'numpy', 'pin',
     ],
     extras_require={'test': ['pytest', 'selenium']},

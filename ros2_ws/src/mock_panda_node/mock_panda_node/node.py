@@ -11,10 +11,9 @@ import time
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.task.balance import BallStarts
-from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
-from shared_control.world.effort_panda import EffortPanda, Mode
+from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.tasks.balance.scene import Ball
+from shared_control.tasks.balance.task import BallStarts
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -22,6 +21,8 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
+from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.effort_arm import EffortPanda, Mode
 from std_srvs.srv import SetBool, Trigger
 
 PERIOD_NS = round(CONTROL_PERIOD * 1e9)

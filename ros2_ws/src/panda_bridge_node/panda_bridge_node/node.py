@@ -9,7 +9,7 @@ import time
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from shared_control.envs.plant import CONTROL_PERIOD
+from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.limits import DOF
 from shared_control.robot.reflex import command_violation
 from shared_control_ros.diagnostics import Diagnostics

@@ -9,9 +9,9 @@ import time
 
 import numpy as np
 from rclpy.node import Node
-from shared_control.envs.plant import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.task.balance import BallStarts
-from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
+from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.tasks.balance.scene import Ball
+from shared_control.tasks.balance.task import BallStarts
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -19,6 +19,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
+from shared_control_sim.bullet import BallOnTrayWorld
 from std_srvs.srv import SetBool, Trigger
 
 from .tick_times import TickTimes

@@ -7,7 +7,7 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
-from shared_control.task.balance import BallStarts
+from shared_control.tasks.balance.task import BallStarts
 from shared_control_ros import contract
 from shared_control_ros.stamps import to_ns
 from std_msgs.msg import Float64MultiArray

@@ -10,7 +10,8 @@ from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
-from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted, PlantState
+from shared_control.plant import PlantInterrupted, PlantState
+from shared_control.rates import POLICY_PERIOD
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
@@ -30,7 +31,7 @@ COMMAND_TIMEOUT = 0.1
 
 
 class GraphPlant:
-    """See :class:`shared_control.envs.plant.Plant`.
+    """See :class:`shared_control.plant.Plant`.
 
     Policy ticks are the stamps of ``/ball`` that are multiples of 20 ms. The state at such a tick is that ball and the
     ``/joint_states_throttle`` of the same stamp; the moment that answers it carries its stamp, too.

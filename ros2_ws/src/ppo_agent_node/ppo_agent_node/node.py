@@ -10,17 +10,18 @@ from dataclasses import replace
 from pathlib import Path
 
 from rclpy.node import Node
-from shared_control.envs.balance_env import BalanceEnv
-from shared_control.envs.plant import POLICY_PERIOD, PlantInterrupted
-from shared_control.learning.episode_ppo import EpisodePPO
-from shared_control.learning.episode_table import TABLE_NAME, EpisodeTable
-from shared_control.learning.evaluate import TEST_SECONDS, evaluate, test_settings
-from shared_control.learning.hooks import Hooks
-from shared_control.learning.learn import learn, make_learner, warm_up
-from shared_control.learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
-from shared_control.learning.presets import PRESETS, preset
-from shared_control.learning.record import EpisodeRecord
-from shared_control.task.settings import DEFAULT_TASK
+from shared_control.env import BalanceEnv
+from shared_control.plant import PlantInterrupted
+from shared_control.rates import POLICY_PERIOD
+from shared_control.tasks.balance.settings import DEFAULT_TASK
+from shared_control_learning.callbacks import Hooks
+from shared_control_learning.episode_ppo import EpisodePPO
+from shared_control_learning.episode_table import TABLE_NAME, EpisodeTable
+from shared_control_learning.evaluation.evaluate import TEST_SECONDS, evaluate, test_settings
+from shared_control_learning.learn import learn, make_learner, warm_up
+from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
+from shared_control_learning.presets import PRESETS, preset
+from shared_control_learning.record import EpisodeRecord
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import ParameterError, declare

@@ -3,8 +3,8 @@
 import signal
 
 import pytest
-from shared_control.learning.episode_table import read_rows
-from shared_control.learning.policy_file import load_policy, read_description
+from shared_control_learning.episode_table import read_rows
+from shared_control_learning.policy_file import load_policy, read_description
 from shared_control_ros import contract
 from std_srvs.srv import SetBool, Trigger
 

@@ -13,9 +13,9 @@ from panda_tray_description import URDF_PATH
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from shared_control.control.moments import MomentSource
-from shared_control.envs.plant import POLICY_PERIOD
+from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import PandaModel
-from shared_control.world.ball_on_tray import Ball
+from shared_control.tasks.balance.scene import Ball
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled

@@ -14,7 +14,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
-from shared_control_ros.testing import domain_id
+from shared_control_testing.nodes import domain_id
 
 __all__ = ['domain_id']
 

@@ -18,7 +18,12 @@ def main() -> int:
     known = sorted(entry_points(group='shared_control.commands'), key=lambda e: e.name)
     # Only the one that is asked for, if it is there: some import torch, which takes seconds.
     for entry_point in [e for e in known if e.name == (sys.argv[1:] or [''])[0]] or known:
-        entry_point.load()(commands)
+        try:
+            add_command = entry_point.load()
+        except ModuleNotFoundError as error:
+            _add_missing(commands, entry_point.name, error.name or str(error))
+        else:
+            add_command(commands)
     args = parser.parse_args()
     try:
         return args.run(args)
@@ -27,3 +32,15 @@ def main() -> int:
     except (ValueError, OSError) as error:
         print(f'shared-control: {error}', file=sys.stderr)
         return 2
+
+
+def _add_missing(commands: argparse._SubParsersAction, name: str, module: str) -> None:
+    """A command whose dependencies are not installed: it says which."""
+    text = f'not installed: it needs the module {module!r}; pip install "shared-control[all]" brings all of them'
+    command = commands.add_parser(name, help=text, description=text)
+    command.add_argument('arguments', nargs=argparse.REMAINDER)
+
+    def run(_: argparse.Namespace) -> int:
+        raise ValueError(f'{name} is {text}')
+
+    command.set_defaults(run=run)

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shared_control.task.balance import BalanceState, BalanceTask, BallStarts
-from shared_control.task.settings import THESIS_TASK
+from shared_control.tasks.balance.settings import THESIS_TASK
+from shared_control.tasks.balance.task import BalanceState, BalanceTask, BallStarts
 
 STATE = BalanceState(position_error=0.1, ball_velocity=-0.15, pitch=0.05, ball_height=0.93, manipulability=0.07)
 

@@ -12,8 +12,7 @@ from launch.conditions import IfCondition
 from launch.substitutions import EqualsSubstitution, IfElseSubstitution, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-from shared_control.human.profiles import PROFILES
-from shared_control.learning.presets import PRESETS, preset
+from shared_control.teaching.profiles import PROFILES
 from shared_control_bringup.launching import (
     common_arguments,
     end_with,
@@ -23,6 +22,7 @@ from shared_control_bringup.launching import (
     view,
     view_argument,
 )
+from shared_control_learning.presets import PRESETS, preset
 
 
 def controller(context: LaunchContext, output: SomeSubstitutionsType) -> list[Node]:

@@ -3,16 +3,16 @@
 import json
 import sys
 
-from shared_control.envs.balance_env import BalanceEnv
-from shared_control.envs.local_plant import LocalPlant
+from shared_control.env import BalanceEnv
 from shared_control.files import write_atomically
-from shared_control.learning.evaluate import evaluate, test_settings
-from shared_control.learning.hooks import Hooks
-from shared_control.learning.policy_file import load_policy, read_description
-from shared_control.learning.record import EpisodeRecord
-from shared_control.session.final_test import save_test
-from shared_control.session.folder import SessionFolder
-from shared_control.session.summary import Summary
+from shared_control_learning.callbacks import Hooks
+from shared_control_learning.evaluation.evaluate import evaluate, test_settings
+from shared_control_learning.policy_file import load_policy, read_description
+from shared_control_learning.record import EpisodeRecord
+from shared_control_records.session.final_test import save_test
+from shared_control_records.session.folder import SessionFolder
+from shared_control_records.session.summary import Summary
+from shared_control_sim.local_plant import LocalPlant
 
 
 class _Progress(Hooks):

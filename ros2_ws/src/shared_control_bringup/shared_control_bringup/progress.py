@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from shared_control.learning.episode_table import read_rows
+from shared_control_learning.episode_table import read_rows
 
 
 class EpisodePrinter:

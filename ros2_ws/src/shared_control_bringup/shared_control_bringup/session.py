@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from session_recorder_node.recovery import annotate, recover
-from shared_control.human.profiles import PROFILES
-from shared_control.learning.presets import PRESETS, preset
-from shared_control.session import in_bag
-from shared_control.session.folder import SessionFolder
+from shared_control.teaching.profiles import PROFILES
+from shared_control_learning.presets import PRESETS, preset
+from shared_control_records.session import bag_metadata as in_bag
+from shared_control_records.session.folder import SessionFolder
 from shared_control_ros.host_and_port import host_and_port
 
 from . import parameters as ros_parameters
@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
     print(f'Session in {folder.path}: {settings["preset"]}, tutor: {settings["tutor"]}.', flush=True)
     end, restarts = _teach(settings, folder, shows_screen)
     # Imported late: torch and matplotlib take seconds, and the person wants to begin.
-    from shared_control.session.report import write_report
+    from shared_control_records.session.report import write_report
 
     from .aftermath import describe_policy, tell_summary, test_policy
     if folder.bag.exists():

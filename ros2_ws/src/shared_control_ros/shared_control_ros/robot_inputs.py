@@ -5,7 +5,7 @@ import math
 import numpy as np
 from rclpy.node import Node
 from shared_control.robot.limits import DOF
-from shared_control.world.ball_on_tray import BallOnTrayWorld
+from shared_control.world import World
 from std_msgs.msg import Float64MultiArray
 
 from . import contract
@@ -58,7 +58,7 @@ class PushInput:
         ticks: how long a push counts.
     """
 
-    def __init__(self, node: Node, world: BallOnTrayWorld, ticks: int):
+    def __init__(self, node: Node, world: World, ticks: int):
         self._node = node
         self._world = world
         self._ticks = ticks

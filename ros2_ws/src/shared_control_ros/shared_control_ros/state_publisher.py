@@ -4,7 +4,7 @@ import numpy as np
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
-from shared_control.world.ball_on_tray import BallOnTrayWorld
+from shared_control.world import World
 
 from . import contract
 from .joint_state_publisher import JointStatePublisher
@@ -23,7 +23,7 @@ class StatePublisher:
         with_clock: publish /clock, too: its time is everybody's.
     """
 
-    def __init__(self, node: Node, world: BallOnTrayWorld, with_clock: bool = True):
+    def __init__(self, node: Node, world: World, with_clock: bool = True):
         self._world = world
         self._joints = JointStatePublisher(node)
         # The ball's frame sits at its centre with the axes of the base: which way a ball has turned is of no use,

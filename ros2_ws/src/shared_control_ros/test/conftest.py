@@ -1,3 +1,3 @@
 """Fixtures of this folder."""
 
-from shared_control_ros.testing import *  # noqa: F403
+from shared_control_testing.nodes import *  # noqa: F403

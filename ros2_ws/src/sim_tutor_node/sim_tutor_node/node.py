@@ -8,10 +8,11 @@ import math
 
 import numpy as np
 from rclpy.node import Node
-from shared_control.envs.plant import POLICY_PERIOD, PlantState
-from shared_control.human.profiles import PROFILES, profile
-from shared_control.human.tutor import SimulatedTutor
+from shared_control.plant import PlantState
+from shared_control.rates import POLICY_PERIOD
 from shared_control.seeds import episode_seed
+from shared_control.teaching.profiles import PROFILES, profile
+from shared_control.teaching.tutor import SimulatedTutor
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled

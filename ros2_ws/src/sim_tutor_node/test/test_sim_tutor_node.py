@@ -7,10 +7,10 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
-from shared_control.human.keystrokes import Key, KeyMoment, KeyPresses
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.posture import Q_REFERENCE
-from shared_control.world.ball_on_tray import TRAY_HOME_X
+from shared_control.tasks.balance.scene import TRAY_HOME_X
+from shared_control.teaching.keys import Key, KeyMoment, KeyPresses
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 from std_msgs.msg import Int32, String

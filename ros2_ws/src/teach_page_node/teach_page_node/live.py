@@ -6,7 +6,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.human.keystrokes import Key, KeyPresses
+from shared_control.teaching.keys import Key, KeyPresses
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.watching.lesson import Lesson

@@ -1,11 +1,11 @@
 """A recorded session as pictures."""
 
 import numpy as np
-from shared_control.human.keystrokes import Key
 from shared_control.robot.model import PandaModel, pitch
-from shared_control.session import topics
-from shared_control.session.bag import Bag, BagReadError
-from shared_control.session.recorded import Series, Wrenches
+from shared_control.teaching.keys import Key
+from shared_control_records import topics
+from shared_control_records.bag.reader import Bag, BagReadError
+from shared_control_records.bag.recorded import Series, Wrenches
 
 from .history import History
 from .live import LIT_FOR

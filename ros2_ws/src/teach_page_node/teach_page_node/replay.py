@@ -25,8 +25,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> int:
     """Serve the replay until Ctrl-C; the exit code."""
     # Imported late: the other commands need neither web server nor bag reader.
-    from shared_control.session.bag import read_bag
-    from shared_control.session.folder import SessionFolder
+    from shared_control_records.bag.reader import read_bag
+    from shared_control_records.session.folder import SessionFolder
 
     from .recording import Recording
     from .replay_desk import ReplayDesk

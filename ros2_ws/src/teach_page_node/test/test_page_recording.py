@@ -1,8 +1,8 @@
 """A recorded session, moment by moment."""
 
 import pytest
-from shared_control.session.bag import BagReadError, read_bag
-from shared_control.session.testing import lesson, record
+from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_testing.sessions import lesson, record
 from teach_page_node.recording import Recording
 from teach_page_node.replay_desk import ReplayDesk
 

@@ -7,7 +7,7 @@ q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves
 from geometry_msgs.msg import WrenchStamped
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.human.keystrokes import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
+from shared_control.teaching.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled

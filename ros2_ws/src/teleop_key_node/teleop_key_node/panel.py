@@ -6,7 +6,7 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.human.keystrokes import Key
+from shared_control.teaching.keys import Key
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.lesson import Lesson

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from shared_control.human.keystrokes import KeyMoment, KeyPresses
+from shared_control.teaching.keys import KeyMoment, KeyPresses
 
 
 class KeySources:

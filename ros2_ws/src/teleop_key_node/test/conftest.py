@@ -13,8 +13,8 @@ from rclpy.node import Node
 from sensor_msgs.msg import Joy
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
-from shared_control_ros.testing import domain_id
-from shared_control_ros.testing_terminal import Terminal
+from shared_control_testing.nodes import domain_id
+from shared_control_testing.terminal import Terminal
 from std_msgs.msg import Int32, String
 
 _COMMAND = [sys.executable, '-m', 'teleop_key_node.node', '--ros-args']

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
-from shared_control.envs.plant import CONTROL_PERIOD, POLICY_PERIOD
+from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
 from shared_control.robot.limits import DOF
 from shared_control.robot.model import PandaModel
 from shared_control.robot.posture import GAINS

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from rclpy.node import Node
-from shared_control.envs.plant import CONTROL_PERIOD
+from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_ros import contract

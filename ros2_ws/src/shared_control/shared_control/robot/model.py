@@ -10,6 +10,8 @@ from panda_tray_description import URDF_PATH
 from .limits import JOINT_NAMES
 
 TRAY_FRAME = 'panda_tray'
+GRAVITY = 9.81
+"""m/s^2"""
 
 
 class PandaModel:

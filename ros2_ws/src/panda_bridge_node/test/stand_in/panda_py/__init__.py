@@ -8,8 +8,9 @@ import time
 from types import SimpleNamespace
 
 import numpy as np
-from shared_control.world.ball_on_tray import Ball, BallOnTrayWorld
-from shared_control.world.effort_panda import EffortPanda, Mode
+from shared_control.tasks.balance.scene import Ball
+from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.effort_arm import EffortPanda, Mode
 
 from . import controllers
 

@@ -1,1 +1,0 @@
-"""People at the keys, real and simulated."""

@@ -1,1 +1,0 @@
-"""Learning with and without a person: presets, PPO, policy files, evaluation."""

@@ -1,0 +1,43 @@
+"""What an environment acts on: arm, tray and ball under control, for one policy period at a time."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class PlantState:
+    """The plant at a policy tick, base frame, SI units."""
+
+    q: np.ndarray
+    """Joint positions, (7,), rad"""
+    ball_position: tuple[float, ...]
+    """(3,), m"""
+    ball_velocity: tuple[float, ...]
+    """(3,), m/s"""
+    m_y_human: float
+    """M_yh over the period that ended here, N m"""
+    m_y_applied: float
+    """M_y over the period that ended here, N m"""
+
+
+class PlantInterrupted(RuntimeError):
+    """The plant went away in mid-episode (a node was restarted): the episode is void, learning is not."""
+
+
+class Plant(Protocol):
+    """A plant in this process, or one reached through topics."""
+
+    def reset(self, seed: int | None) -> PlantState:
+        """Start an episode; a ``seed`` begins the sequence of ball starts anew."""
+
+    def advance(self, m_y_agent: float) -> PlantState:
+        """Apply M_yai (N m) for one policy period.
+
+        Raises:
+            PlantInterrupted: the episode cannot go on.
+        """
+
+    def close(self) -> None:
+        """Let go of everything."""

@@ -1,1 +1,0 @@
-"""Reports: of a study, and of a session from its bag alone."""

@@ -1,1 +1,0 @@
-"""What a session leaves behind: its folder, its bag read back, checks, summary, picture and report."""

@@ -1,0 +1,1 @@
+"""Tasks that a person and a robot do together; one folder each."""

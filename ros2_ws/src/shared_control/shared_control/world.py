@@ -1,0 +1,39 @@
+"""The physical world that a simulated robot lives in."""
+
+from typing import Protocol
+
+import numpy as np
+
+
+class World(Protocol):
+    """An arm that takes joint torques, a tray on its flange and a ball, one tick at a time.
+
+    An episode depends on nothing that came before it, and two worlds given the same torques from the same start go
+    through the same states, bit for bit. Vectors are in the base frame, in SI units.
+    """
+
+    dt: float
+    """Length of a tick, s."""
+    effort: np.ndarray
+    """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
+
+    def reset(self, ball_x: float) -> None:
+        """Arm at rest at the reference joints, ball at rest above the tray at ``ball_x``, m."""
+
+    def joint_state(self) -> tuple[np.ndarray, np.ndarray]:
+        """Joint positions, rad, and velocities, rad/s, each (7,)."""
+
+    def ball_state(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """The ball: position, m; quaternion x y z w; velocity, m/s; angular velocity, rad/s."""
+
+    def push(self, force: np.ndarray) -> None:
+        """Push the tray's origin with ``force`` ((3,), N) from the next tick on, until called again."""
+
+    def step(self, torque: np.ndarray) -> None:
+        """One tick with joint torques ``torque`` ((7,), N m), kept within the joints' limits."""
+
+    def step_braked(self) -> None:
+        """One tick without a command: the joints' brakes hold them."""
+
+    def close(self) -> None:
+        """Free the physics engine."""

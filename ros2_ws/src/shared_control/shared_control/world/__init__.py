@@ -1,1 +1,0 @@
-"""The physical world, simulated."""

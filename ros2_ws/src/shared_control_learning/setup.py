@@ -1,0 +1,28 @@
+from setuptools import find_packages, setup
+
+package_name = 'shared_control_learning'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        ('share/' + package_name, ['package.xml']),
+    ],
+    install_requires=[
+        'shared_control', 'shared_control_sim', 'numpy', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
+        'tensorboard', 'tqdm',
+    ],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    maintainer='shared-control maintainers',
+    maintainer_email='maintainers@shared-control.invalid',
+    description='Learning from people and rewards: PPO, corrections, policy files, training, tests of a policy.',
+    license='Apache-2.0',
+    entry_points={
+        'shared_control.commands': [
+            'train = shared_control_learning.train_command:add_command',
+        ],
+    },
+)

@@ -1,0 +1,1 @@
+"""Learning with and without a person: presets, PPO, policy files, training, tests of a policy."""

@@ -1,0 +1,64 @@
+"""What the person's key presses say about the policy."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+import torch
+from shared_control.rates import POLICY_PERIOD
+
+from .episode import Episode
+from .presets import CoachingSettings
+
+
+@dataclass(frozen=True, eq=False)
+class Corrections:
+    """Corrected states, and what the policy should have done there; a row each."""
+
+    observations: torch.Tensor
+    """(n, 3), float32"""
+    labels: torch.Tensor
+    """(n, 1), float32"""
+    weights: torch.Tensor
+    """(n, 1), float32: the part of the delays with which the person held a moment."""
+    episodes: torch.Tensor
+    """(n, 1), float32: in which episode, from 1."""
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+    def followed_by(self, later: 'Corrections') -> 'Corrections':
+        """These and ``later`` ones."""
+        return Corrections(*(torch.cat([getattr(self, f.name), getattr(later, f.name)]) for f in fields(self)))
+
+    def since(self, episode: int) -> 'Corrections':
+        """Those of ``episode`` and later ones."""
+        kept = self.episodes[:, 0] >= episode
+        return Corrections(*(getattr(self, f.name)[kept] for f in fields(self)))
+
+
+NONE = Corrections(*(torch.zeros(0, columns) for columns in (3, 1, 1, 1)))
+
+
+def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching: CoachingSettings,
+                     action_scale: float) -> Corrections:
+    """The corrections of an episode.
+
+    People react late, and some later than others: the moment held at t corrects what the policy did at t - d, for
+    all d in D alike. The label is the mean of ``clip(pi(s_{t-d}) + g M_yh(t) / M_max)`` over D, and it weighs as
+    much as the part of D with M_yh != 0.
+
+    Args:
+        number: of the episode, from 1.
+        means: what the policy does in the states of the episode without exploring, (steps, 1).
+        action_scale: M_max, N m.
+    """
+    steps = len(episode)
+    later = [min(round(delay / POLICY_PERIOD), steps) for delay in coaching.delays]
+    held = np.array(episode.m_y_human, np.float32)
+    human = np.stack([np.append(held[d:], np.zeros(d, np.float32)) for d in later], axis=1)  # (steps, D)
+    human[steps - max(later):] = 0.0  # what people would have pressed after the end is not known
+    labels = np.clip(means + coaching.gain * human / action_scale, -1.0, 1.0).mean(axis=1, keepdims=True)
+    weights = (human != 0.0).mean(axis=1, keepdims=True)
+    corrected = np.flatnonzero(weights)
+    return Corrections(*(torch.as_tensor(values[corrected].astype(np.float32)) for values in (
+        np.array(episode.observations), labels, weights, np.full((steps, 1), number))))

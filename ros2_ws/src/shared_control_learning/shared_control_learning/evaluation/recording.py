@@ -1,0 +1,53 @@
+"""The environment of the tests, which writes down what they measure."""
+
+from typing import Any
+
+import numpy as np
+from shared_control.env import BalanceEnv
+from shared_control.rates import POLICY_PERIOD
+from shared_control.robot.model import PandaModel
+from shared_control.tasks.balance.settings import TaskSettings
+from shared_control_sim.local_plant import LocalPlant
+
+from .result import TRACKS, ProtocolResult
+
+
+class RecordingEnv(BalanceEnv):
+    """A :class:`BalanceEnv` on a plant in this process that keeps the tracks of all its episodes."""
+
+    def __init__(self, plant: LocalPlant, settings: TaskSettings):
+        super().__init__(plant, settings)
+        self._world = plant.world
+        self._robot = PandaModel()
+        self._episodes: list[list[tuple[float, ...]]] = []
+        self._fallen: list[bool] = []
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None,
+              ) -> tuple[np.ndarray, dict[str, Any]]:
+        """See :class:`BalanceEnv`; a new row begins."""
+        self._episodes.append([])
+        self._fallen.append(False)
+        return super().reset(seed=seed, options=options)
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
+        """See :class:`BalanceEnv`."""
+        result = super().step(action)
+        info = result[-1]
+        state = info['state']
+        q, qd = self._world.joint_state()
+        tray_velocity = float(self._robot.jacobian(q)[0] @ qd)
+        self._episodes[-1].append((
+            state.position_error, state.ball_velocity, tray_velocity - state.ball_velocity, info['m_y_agent'],
+            state.manipulability))
+        self._fallen[-1] = info['fallen']
+        return result
+
+    def result(self, test: str) -> ProtocolResult:
+        """All episodes so far, as the result of ``test``."""
+        steps = round(self.settings.episode_seconds / POLICY_PERIOD)
+        tracks = np.full((len(TRACKS), len(self._episodes), steps), np.nan)
+        for row, episode in enumerate(self._episodes):
+            tracks[:, row, :len(episode)] = np.array(episode).T
+        return ProtocolResult(
+            test, np.arange(1, steps + 1) * POLICY_PERIOD, **dict(zip(TRACKS, tracks, strict=True)),
+            fallen=np.array(self._fallen))

@@ -1,0 +1,36 @@
+"""The tests by name."""
+
+from shared_control.control.references import FREQUENCIES
+from shared_control.tasks.balance.settings import TaskSettings
+
+from ..callbacks import Hooks
+from .evaluate import TEST_EPISODES, TEST_SEED, Act
+from .perturbation import run_perturbation
+from .randomized import run_randomized
+from .result import ProtocolResult
+from .trajectory import run_trajectory
+
+PROTOCOLS = ('randomized', 'perturbation', 'trajectory')
+
+
+def run_protocol(name: str, act: Act, task: TaskSettings, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
+                 hooks: Hooks | None = None) -> list[ProtocolResult]:
+    """The results of a protocol: one, or one a frequency.
+
+    Args:
+        name: one of :data:`PROTOCOLS`.
+        act: the policy.
+        task: what it was trained for.
+        episodes, seed: of the randomised test; the others have one episode that is always the same.
+        hooks: are told of each episode.
+    """
+    if name == 'randomized':
+        return [run_randomized(act, task, episodes, seed, hooks)]
+    if name == 'perturbation':
+        return [run_perturbation(act, task, hooks=hooks)]
+    return [run_trajectory(act, frequency, task, hooks) for frequency in FREQUENCIES]
+
+
+def count_episodes(name: str, episodes: int = TEST_EPISODES) -> int:
+    """How many episodes a protocol has."""
+    return {'randomized': episodes, 'perturbation': 1, 'trajectory': len(FREQUENCIES)}[name]

@@ -1,0 +1,106 @@
+"""``shared-control train``: teach a policy in this process, without a graph."""
+
+import argparse
+import json
+import shutil
+import sys
+from dataclasses import asdict
+from pathlib import Path
+
+from shared_control.teaching.profiles import PROFILES, profile
+from tqdm import tqdm
+
+from .callbacks import Hooks
+from .presets import PRESETS, preset
+from .record import EpisodeRecord
+from .training import RUN_NAME, TrainingError, TrainingRun, read_run, train
+
+
+def add_command(commands: argparse._SubParsersAction) -> None:
+    """Add ``train`` to the command line."""
+    parser = commands.add_parser(
+        'train', help='teach a policy in this process, by a simulated tutor or by nobody',
+        description='Teaches a policy headless and as fast as the machine can, with a simulated tutor or none; after '
+        'each episode the policy is tested alone. The folder gets policy.safetensors, episodes.csv, run.json and '
+        'TensorBoard logs.')
+    parser.add_argument('--preset', choices=tuple(PRESETS), default='coached', help='what is learned, and how')
+    parser.add_argument('--tutor', choices=(*PROFILES, 'none'), help='simulated tutor (default: expert; none for the '
+                        'preset autonomous)')
+    parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
+    parser.add_argument('--seed', type=int, default=0, help='of everything random (default: 0)')
+    parser.add_argument('--episodes', type=int, default=20, help='at most so many (default: 20)')
+    parser.add_argument('--until-skilled', action='store_true', help='stop when two tests in a row were passed')
+    parser.add_argument('--evaluate-every', type=int, default=1, metavar='N', help='test after every Nth episode; 0: '
+                        'never (default: 1)')
+    parser.add_argument('--output', type=Path, default=Path('out/train'), help='folder (default: out/train)')
+    choice = parser.add_mutually_exclusive_group()
+    choice.add_argument('--resume', action='store_true', help='go on with the run in the folder')
+    choice.add_argument('--overwrite', action='store_true', help='begin anew in a folder that holds a run')
+    parser.add_argument('--json', type=Path, metavar='FILE', help='write the result there as well; - for the output')
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
+    _prepare(args)
+    chosen = preset(args.preset)
+    tutor = args.tutor or ('none' if args.preset == 'autonomous' else 'expert')
+    done = read_run(args.output).episodes if args.resume else 0
+    try:
+        with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
+            result = train(
+                chosen, None if tutor == 'none' else profile(tutor), args.seed, args.episodes,
+                until_skilled=args.until_skilled, human_only=args.human_only, folder=args.output, tensorboard=True,
+                evaluate_every=args.evaluate_every, hooks=_Bar(bar, args.output))
+    except KeyboardInterrupt:
+        print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)
+        return 130
+    _tell(result, tutor, args)
+    return 0 if result.skilled is not None or not result.tests else 1
+
+
+def _prepare(args: argparse.Namespace) -> None:
+    """Check the numbers, and that the folder is as the options say."""
+    if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
+        raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
+    if args.preset == 'autonomous' and args.tutor not in (None, 'none'):
+        raise ValueError('the preset autonomous has no tutor: leave --tutor out, or choose another preset')
+    holds_run = (args.output / RUN_NAME).exists()
+    if args.resume and not holds_run:
+        raise TrainingError(f'--resume: there is no run in {args.output}')
+    if args.overwrite and holds_run:
+        shutil.rmtree(args.output)
+    elif holds_run and not args.resume:
+        raise TrainingError(f'{args.output} holds a run: --resume, --overwrite, or another --output')
+
+
+class _Bar(Hooks):
+    """Moves the progress bar on."""
+
+    def __init__(self, bar: tqdm, folder: Path):
+        self._bar, self._folder = bar, folder
+
+    def episode_learned(self, record: EpisodeRecord) -> None:
+        """See :class:`Hooks`."""
+        tests = [passed for _, passed in read_run(self._folder).tests]
+        self._bar.set_postfix_str(
+            f'return {record.episode_return:.0f}, human {record.intervention_rate:.0%} of the time, '
+            f'tests passed {sum(tests)} of {len(tests)}{", the last one" if tests[-1:] == [True] else ""}')
+        self._bar.update()
+
+
+def _tell(result: TrainingRun, tutor: str, args: argparse.Namespace) -> None:
+    summary = {**asdict(result), 'tutor': tutor, 'tutor_is_simulated': tutor != 'none', 'episodes': result.episodes,
+               'first_pass': result.first_pass, 'skilled': result.skilled, 'folder': str(args.output)}
+    text = json.dumps(summary, indent=2) + '\n'
+    if args.json == Path('-'):
+        print(text, end='')
+        return
+    if args.json is not None:
+        args.json.parent.mkdir(parents=True, exist_ok=True)
+        args.json.write_text(text)
+    found = 'was not tested' if not result.tests else (
+        f'skilled after {result.skilled} episodes' if result.skilled is not None else
+        f'not skilled after {result.episodes} episodes')
+    print(f'{args.preset}, {"nobody" if tutor == "none" else f"simulated {tutor}"} at the keys, seed {args.seed}: '
+          f'{found}; {result.seconds:.0f} s. {args.output}')

@@ -1,0 +1,111 @@
+"""Policies on disk: what goes in comes out, resuming is as if nothing had happened, and rubbish is refused."""
+
+import json
+
+import pytest
+import torch
+from safetensors.torch import load, save
+from shared_control.env import BalanceEnv
+from shared_control_learning.learn import learn, make_learner
+from shared_control_learning.policy_file import PolicyFileError, load_policy, read_description, save_policy
+from shared_control_learning.presets import PRESETS, preset
+
+
+def weights(learner):
+    return torch.cat([p.detach().flatten() for p in learner.policy.parameters()])
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / 'policy.safetensors'
+
+
+@pytest.mark.parametrize('name', PRESETS)
+def test_resuming_is_as_if_nothing_had_happened(path, name, fake_plant):
+    env = BalanceEnv(fake_plant(5.0, falls_at=150), preset(name).task)
+    straight = make_learner(preset(name), 7)
+    learn(straight, env, episodes=3)
+    first = make_learner(preset(name), 7)
+    learn(first, env, episodes=2)
+    save_policy(first, path)
+    resumed = load_policy(path)
+    assert (resumed.episode, resumed.seed, resumed.preset) == (2, 7, preset(name))
+    assert torch.equal(weights(resumed), weights(first))
+    learn(resumed, env, episodes=3)
+    assert torch.equal(weights(resumed), weights(straight))
+    assert resumed.num_timesteps == straight.num_timesteps
+
+
+def test_saves_over_an_older_file_and_leaves_nothing_else(path):
+    learner = make_learner(preset('coached'))
+    save_policy(learner, path)
+    learner.episode = 4
+    save_policy(learner, path)
+    assert read_description(path)['episode'] == 4
+    assert list(path.parent.iterdir()) == [path]
+
+
+def refused(path, reason):
+    with pytest.raises(PolicyFileError, match=reason) as error:
+        load_policy(path)
+    assert str(path) in str(error.value)
+
+
+def test_missing_and_foreign_files_are_refused(path):
+    refused(path, 'no policy file')
+    path.write_bytes(b'')
+    refused(path, 'is no policy')
+    path.write_bytes(b'\x80\x04rubbish' * 100)
+    refused(path, 'is no policy')
+    path.write_bytes(save({'a': torch.zeros(3)}))
+    refused(path, 'is no policy')
+    with path.open('wb') as file:
+        file.truncate(2**30)
+    refused(path, '1073741824 bytes')
+
+
+def test_a_truncated_file_is_refused(path):
+    save_policy(make_learner(preset('coached')), path)
+    content = path.read_bytes()
+    for size in (4, 100, len(content) // 2, len(content) - 1):
+        path.write_bytes(content[:size])
+        refused(path, 'is no policy')
+
+
+def change(path, description=lambda d: None, tensors=lambda t: None):
+    """Write a good file with something changed in it."""
+    save_policy(make_learner(preset('coached')), path)
+    stored, words = load(path.read_bytes()), read_description(path)
+    description(words)
+    tensors(stored)
+    path.write_bytes(save(stored, {'policy': json.dumps(words)}))
+
+
+@pytest.mark.parametrize(('edit', 'reason'), [
+    (lambda d: d.update(format='shared-control policy 99'), 'of this version'),
+    (lambda d: d['preset'].update(name='magic'), "no preset 'magic'"),
+    (lambda d: d['preset']['ppo'].update(hidden=[100_000]), 'hidden layers'),
+    (lambda d: d['preset']['ppo'].update(value_hidden=[8, 8]), 'expected torch.float32'),
+    (lambda d: d['preset']['ppo'].update(hidden='wide'), 'hidden'),
+    (lambda d: d['preset']['task'].update(action_scale=float('nan')), 'action_scale'),
+    (lambda d: d['preset']['task'].pop('action_scale'), 'TaskSettings'),
+    (lambda d: d.update(episode=-1), 'episode'),
+    (lambda d: d.update(seed='x'), 'seed'),
+    (lambda d: d['action_space'].update(low=[-2.0]), 'action_space'),
+    (lambda d: d.pop('preset'), 'preset'),
+])
+def test_a_wrong_description_is_refused(path, edit, reason):
+    change(path, description=edit)
+    refused(path, reason)
+
+
+@pytest.mark.parametrize(('edit', 'reason'), [
+    (lambda t: t['policy.log_std'].fill_(float('nan')), 'policy.log_std has numbers that are not finite'),
+    (lambda t: t.pop('policy.log_std'), 'differ: policy.log_std'),
+    (lambda t: t.update(extra=torch.zeros(1)), 'differ: extra'),
+    (lambda t: t.update({'policy.log_std': torch.zeros(2)}), r'policy.log_std is torch.float32 \(2,\)'),
+    (lambda t: t.update({'policy.log_std': torch.zeros(1, dtype=torch.float64)}), 'float64'),
+])
+def test_wrong_tensors_are_refused(path, edit, reason):
+    change(path, tensors=edit)
+    refused(path, reason)

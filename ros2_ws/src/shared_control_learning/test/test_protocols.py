@@ -1,0 +1,75 @@
+"""The tests of a policy: what is done to the plant, and what is kept of it."""
+
+import numpy as np
+import pytest
+from shared_control.control.references import FREQUENCIES, cosine_velocity
+from shared_control.env import BalanceEnv
+from shared_control.tasks.balance.settings import DEFAULT_TASK
+from shared_control_learning.evaluation.evaluate import evaluate, test_settings
+from shared_control_learning.evaluation.perturbation import FORCE, PUSHES, run_perturbation
+from shared_control_learning.evaluation.randomized import run_randomized
+from shared_control_learning.evaluation.result import TRACKS
+from shared_control_learning.evaluation.trajectory import run_trajectory
+from shared_control_sim.local_plant import LocalPlant
+
+
+def check_shapes(result, episodes, seconds):
+    steps = round(seconds * 50)
+    assert result.seconds[0] == pytest.approx(0.02) and result.seconds[-1] == pytest.approx(seconds)
+    for name in TRACKS:
+        assert getattr(result, name).shape == (episodes, steps), name
+    assert result.fallen.shape == (episodes,)
+
+
+def test_randomized_is_the_evaluation_with_more_written_down(good_robot):
+    result = run_randomized(good_robot, episodes=2)
+    check_shapes(result, 2, 10)
+    env = BalanceEnv(LocalPlant(), test_settings(DEFAULT_TASK))
+    for ours, theirs in zip(result.episodes, evaluate(good_robot, env, 2).episodes, strict=True):
+        np.testing.assert_array_equal(ours.position_error, theirs.position_error)
+        np.testing.assert_array_equal(ours.velocity, theirs.velocity)
+        assert ours.success and theirs.success
+    env.close()
+    assert (result.manipulability > 0.07).all() and (result.manipulability < 0.076).all()
+    np.testing.assert_allclose(
+        np.diff(result.position_error) / 0.02, result.velocity_error[:, 1:], atol=0.12)
+
+
+def test_perturbation_pushes_twice_and_a_good_policy_recovers(good_robot):
+    result = run_perturbation(good_robot)
+    check_shapes(result, 1, 30)
+    error = np.abs(result.position_error[0])
+    before, between = (result.seconds > 3) & (result.seconds <= 5), (result.seconds > 9) & (result.seconds <= 10)
+    for start, end in PUSHES:
+        assert error[(result.seconds > start) & (result.seconds <= end + 1)].max() > 3 * error[before].max()
+    assert error[between].mean() < 0.05
+    assert not result.fallen[0]
+    assert error[-150:].mean() < 0.02
+
+
+def test_a_push_up_and_forwards_is_more_than_the_agent_can_hold(good_robot):
+    """Why docs/protocols.md pushes forwards and down: 8 N m against a push of equal signs lose the ball."""
+    step = 0
+
+    def full_counter_moment(observation):
+        nonlocal step
+        step += 1
+        return np.array([-1.0]) if 5 < step * 0.02 <= 6 else good_robot(observation)
+
+    force = (FORCE[0], 0.0, -FORCE[2])
+    result = run_perturbation(full_counter_moment, force=force)
+    assert result.fallen[0]
+    fall = np.isfinite(result.position_error[0]).sum()
+    assert 6 < result.seconds[fall - 1] < 7
+    assert np.isnan(result.manipulability[0, fall:]).all()
+
+
+def test_trajectory_moves_the_tray_as_a_cosine(good_robot):
+    frequency = FREQUENCIES[-1]
+    result = run_trajectory(good_robot, frequency)
+    check_shapes(result, 1, 20)
+    tray = (result.velocity_error + result.velocity)[0]
+    late = result.seconds > 2
+    reference = cosine_velocity(result.seconds, frequency)
+    assert np.std((tray - reference)[late]) < 0.1 * np.std(reference[late])
+    assert not result.fallen[0]

@@ -1,0 +1,96 @@
+"""Teaching in process: what is kept, and that a run goes on as if it had never stopped."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from shared_control.cli import main
+from shared_control.teaching.profiles import profile
+from shared_control_learning.callbacks import Hooks
+from shared_control_learning.episode_table import read_rows
+from shared_control_learning.presets import preset
+from shared_control_learning.training import TrainingError, TrainingRun, read_run, train
+
+SHORT = replace(preset('coached'), task=replace(preset('coached').task, episode_seconds=2.0))
+EXPERT = profile('expert')
+
+
+class Killed(Exception):
+    """Stands for the end of the process."""
+
+
+class KillIn(Hooks):
+    """Ends the run in the middle of an episode."""
+
+    def __init__(self, episode):
+        self._episode = episode
+
+    def stepped(self, record):
+        if record.episode == self._episode and record.steps == 40:
+            raise Killed
+
+
+def test_a_run_that_was_killed_ends_as_one_that_was_not(tmp_path):
+    train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'whole', evaluate_every=0)
+    for episode in (2, 3):
+        with pytest.raises(Killed):
+            train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, hooks=KillIn(episode))
+    run = train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, tensorboard=True)
+    whole, parts = ((tmp_path / name / 'policy.safetensors').read_bytes() for name in ('whole', 'parts'))
+    assert whole == parts
+    assert run.returns == read_run(tmp_path / 'whole').returns
+    assert [row['episode'] for row in read_rows(tmp_path / 'parts/episodes.csv')] == ['1', '2', '3']
+    assert list((tmp_path / 'parts/tensorboard').iterdir())
+
+
+def test_another_run_is_not_mixed_in(tmp_path):
+    train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0)
+    with pytest.raises(TrainingError, match='seed 5, asked for 6'):
+        train(SHORT, None, 6, 2, folder=tmp_path, evaluate_every=0)
+
+
+def test_a_policy_that_knows_nothing_does_not_pass(tmp_path):
+    run = train(SHORT, None, 5, 2, folder=tmp_path, evaluate_every=2)
+    assert run.tests == read_run(tmp_path).tests == [(2, False)]
+    assert run.skilled is None
+
+
+def test_skilled_is_two_tests_in_a_row():
+    def run(*passed):
+        return TrainingRun('coached', None, 0, tests=list(enumerate(passed, 1)))
+
+    assert run(True, False, True, True, True).skilled == 4
+    assert run(False, True, False, True).skilled is None
+    assert run(False, True, False).first_pass == 2
+
+
+def test_human_only_leaves_the_agent_out(tmp_path):
+    train(SHORT, EXPERT, 5, 1, human_only=True, folder=tmp_path, evaluate_every=0)
+    row, = read_rows(tmp_path / 'episodes.csv')
+    assert float(row['mean_abs_m_y_agent']) == 0.0
+    assert float(row['mean_abs_m_y_human']) > 0.0
+
+
+def command(monkeypatch, *arguments):
+    monkeypatch.setattr('sys.argv', ['shared-control', 'train', *map(str, arguments)])
+    return main()
+
+
+def test_command_trains_goes_on_and_tells(tmp_path, monkeypatch, capsys):
+    folder, result = tmp_path / 'run', tmp_path / 'result.json'
+    assert command(monkeypatch, '--episodes', 1, '--evaluate-every', 0, '--output', folder, '--json', result) == 0
+    assert json.loads(result.read_text())['tutor'] == 'expert'
+    assert command(monkeypatch, '--output', folder) == 2
+    assert '--resume, --overwrite, or another --output' in capsys.readouterr().err
+    assert command(monkeypatch, '--episodes', 2, '--evaluate-every', 0, '--output', folder, '--resume') == 0
+    assert read_run(folder).episodes == 2
+
+
+@pytest.mark.parametrize(('arguments', 'message'), [
+    (('--preset', 'autonomous', '--tutor', 'low'), 'autonomous has no tutor'),
+    (('--episodes', '0'), 'at least 1'),
+    (('--resume',), 'there is no run'),
+])
+def test_command_refuses(arguments, message, tmp_path, monkeypatch, capsys):
+    assert command(monkeypatch, '--output', tmp_path / 'run', *arguments) == 2
+    assert message in capsys.readouterr().err

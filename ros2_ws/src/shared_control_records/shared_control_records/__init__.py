@@ -1,0 +1,1 @@
+"""What is kept and shown: bags, sessions, studies, reports, exports, validation."""

@@ -1,0 +1,1 @@
+"""Bags: read back as arrays, and checked."""

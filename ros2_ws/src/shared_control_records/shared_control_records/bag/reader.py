@@ -1,0 +1,185 @@
+"""Reading a session's bag into arrays."""
+
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rosbags.highlevel import AnyReader
+from rosbags.interfaces import Connection
+from rosbags.typesys import Stores, get_typestore
+from shared_control.robot.limits import DOF, JOINT_NAMES
+from shared_control.teaching.keys import KeyPresses
+
+from .. import topics
+from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout
+from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
+
+_SMALLEST_JOINT_STATE = 192
+_SMALLEST_COMMAND = 60
+
+
+class BagReadError(OSError):
+    """A bag cannot be read; the message names it and says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bag:
+    """A session's bag."""
+
+    path: Path
+    start_ns: int
+    """When the first message was received."""
+    end_ns: int
+    """When the last message was received."""
+    counts: dict[str, int]
+    """Messages by topic; a topic that was recorded and stayed silent has 0."""
+    unusable: dict[str, int]
+    """Messages that could not be used, by topic."""
+    joint_states: JointStates
+    commands: Commands
+    human: Wrenches
+    agent: Wrenches
+    applied: Wrenches
+    disturbance: Wrenches
+    ball: BallTrack
+    training: dict[str, Series]
+    """By topic: those of ``topics.TRAINING``."""
+    presses: list[Press]
+    statuses: dict[str, list[Status]]
+    """Reports on /diagnostics, by the name of the node."""
+
+
+def read_bag(path: Path) -> Bag:
+    """Read a bag: a rosbag2 folder or a single MCAP file.
+
+    Raises:
+        BagReadError: there is none, or it was not finished, or it is damaged.
+    """
+    path = Path(path)
+    if path.is_dir() and not (path / 'metadata.yaml').is_file():
+        raise BagReadError(f'the bag {path} has no metadata.yaml: its recording was not finished')
+    if not path.exists():
+        raise BagReadError(f'there is no bag {path}')
+    try:
+        with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+            collector = _Collector(reader)
+            for connection, received_ns, raw in reader.messages():
+                collector.add(connection, received_ns, raw)
+            return collector.finish(path)
+    except Exception as error:  # a damaged file makes rosbags and the decompressor raise errors of many kinds
+        raise BagReadError(f'cannot read the bag {path}: {error or type(error).__name__}') from error
+
+
+class _Collector:
+    """Sorts the messages of a bag by topic, decoding them."""
+
+    def __init__(self, reader: AnyReader):
+        self._reader = reader
+        self._counts = Counter({connection.topic: 0 for connection in reader.connections})
+        self._unusable: Counter[str] = Counter()
+        self._bulk = {
+            topics.JOINT_STATES: BulkTopic(self._joint_state, joint_state_layout, _SMALLEST_JOINT_STATE),
+            topics.EFFORT_COMMANDS: BulkTopic(self._command, command_layout, _SMALLEST_COMMAND)}
+        self._rows: dict[str, list[tuple[Any, ...]]] = {}
+        self._decoders = {
+            topics.HUMAN_WRENCH: _wrench, topics.AGENT_WRENCH: _wrench, topics.APPLIED_WRENCH: _wrench,
+            topics.DISTURBANCE: _wrench, topics.BALL: _ball,
+            **dict.fromkeys(topics.TRAINING, lambda message: (message.data,))}
+        self._keys: dict[str, KeyPresses] = {}
+        self._presses: list[Press] = []
+        self._statuses: dict[str, list[Status]] = {}
+        self._times: list[int] = []
+
+    def add(self, connection: Connection, received_ns: int, raw: bytes) -> None:
+        """One message."""
+        topic = connection.topic
+        self._counts[topic] += 1
+        self._times = [self._times[0] if self._times else received_ns, received_ns]
+        if topic in self._bulk:
+            self._bulk[topic].add(received_ns, raw)
+        elif topic in self._decoders:
+            message = self._reader.deserialize(raw, connection.msgtype)
+            self._rows.setdefault(topic, []).append((received_ns, *self._decoders[topic](message)))
+        elif topic == topics.KEYS:
+            self._add_keys(received_ns, self._reader.deserialize(raw, connection.msgtype))
+        elif topic == topics.DIAGNOSTICS:
+            self._add_statuses(received_ns, self._reader.deserialize(raw, connection.msgtype))
+
+    def finish(self, path: Path) -> Bag:
+        """Everything as arrays."""
+        start_ns, end_ns = self._times or (0, 0)
+        return Bag(
+            path=path, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
+            joint_states=JointStates(*self._bulk_columns(
+                topics.JOINT_STATES, _no_stamps(), *(np.empty((0, DOF)) for _ in range(3)))),
+            commands=Commands(*self._bulk_columns(topics.EFFORT_COMMANDS, np.empty((0, DOF)))),
+            human=self._wrenches(topics.HUMAN_WRENCH), agent=self._wrenches(topics.AGENT_WRENCH),
+            applied=self._wrenches(topics.APPLIED_WRENCH), disturbance=self._wrenches(topics.DISTURBANCE),
+            ball=BallTrack(*self._columns(topics.BALL, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
+            training={topic: Series(*self._columns(topic, np.empty(0))) for topic in topics.TRAINING},
+            presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
+
+    def _bulk_columns(self, topic: str, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
+        bulk = self._bulk[topic]
+        times, columns = bulk.finish()
+        self._unusable[topic] += bulk.unusable
+        if not columns:
+            return times, *empty
+        if topic == topics.JOINT_STATES:  # seconds and nanoseconds
+            columns[0] = columns[0].astype(np.int64) @ np.array([1_000_000_000, 1])
+        return times, *columns
+
+    def _columns(self, topic: str, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
+        rows = self._rows.get(topic)
+        return tuple(np.array(column) for column in zip(*rows, strict=True)) if rows else (_no_stamps(), *empty)
+
+    def _wrenches(self, topic: str) -> Wrenches:
+        return Wrenches(*self._columns(
+            topic, _no_stamps(), np.empty(0, str), np.empty((0, 3)), np.empty((0, 3))))
+
+    def _joint_state(self, raw: bytes) -> Row | None:
+        message: Any = self._reader.deserialize(raw, 'sensor_msgs/msg/JointState')
+        if tuple(message.name) != JOINT_NAMES or not all(
+                len(values) == DOF for values in (message.position, message.velocity, message.effort)):
+            return None
+        stamp = message.header.stamp
+        return np.array([stamp.sec, stamp.nanosec]), message.position, message.velocity, message.effort
+
+    def _command(self, raw: bytes) -> Row | None:
+        message: Any = self._reader.deserialize(raw, 'std_msgs/msg/Float64MultiArray')
+        return (message.data,) if len(message.data) == DOF else None
+
+    def _add_keys(self, received_ns: int, message: Any) -> None:
+        source = message.header.frame_id
+        try:
+            pressed = self._keys.setdefault(source, KeyPresses()).update(message.buttons.tolist())
+        except ValueError:
+            self._unusable[topics.KEYS] += 1
+            return
+        self._presses += [Press(received_ns, source, key) for key in pressed]
+
+    def _add_statuses(self, received_ns: int, message: Any) -> None:
+        for status in message.status:
+            values = {value.key: value.value for value in status.values}
+            self._statuses.setdefault(status.name.lstrip('/'), []).append(
+                Status(received_ns, status.level == 0, status.message, values))
+
+
+def _wrench(message: Any) -> tuple[Any, ...]:
+    force, torque = message.wrench.force, message.wrench.torque
+    return (_stamp_ns(message), message.header.frame_id, (force.x, force.y, force.z), (torque.x, torque.y, torque.z))
+
+
+def _ball(message: Any) -> tuple[Any, ...]:
+    position, velocity = message.pose.pose.position, message.twist.twist.linear
+    return (_stamp_ns(message), (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z))
+
+
+def _stamp_ns(message: Any) -> int:
+    return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+
+
+def _no_stamps() -> np.ndarray:
+    return np.empty(0, np.int64)

@@ -1,0 +1,107 @@
+"""What a bag holds, as arrays.
+
+``received_ns`` is the wall clock of the recorder, ns; ``stamp_ns`` is the robot's time (simulation time when it is
+simulated), ns. Rows are in the order in which they were received.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from shared_control.teaching.keys import Key
+
+
+@dataclass(frozen=True, eq=False)
+class JointStates:
+    """/joint_states; a tick that nobody answered may appear again."""
+
+    received_ns: np.ndarray
+    """(n,)"""
+    stamp_ns: np.ndarray
+    """(n,)"""
+    q: np.ndarray
+    """(n, 7), rad"""
+    qd: np.ndarray
+    """(n, 7), rad/s"""
+    effort: np.ndarray
+    """(n, 7), N m: what was applied last."""
+
+
+@dataclass(frozen=True, eq=False)
+class Commands:
+    """/effort_controller/commands, which carry no stamp."""
+
+    received_ns: np.ndarray
+    """(n,)"""
+    torque: np.ndarray
+    """(n, 7), N m"""
+
+
+@dataclass(frozen=True, eq=False)
+class Wrenches:
+    """A wrench topic."""
+
+    received_ns: np.ndarray
+    """(n,)"""
+    stamp_ns: np.ndarray
+    """(n,)"""
+    frame: np.ndarray
+    """(n,), names"""
+    force: np.ndarray
+    """(n, 3), N"""
+    torque: np.ndarray
+    """(n, 3), N m"""
+
+    @property
+    def m_y(self) -> np.ndarray:
+        """(n,), N m"""
+        return self.torque[:, 1]
+
+
+@dataclass(frozen=True, eq=False)
+class BallTrack:
+    """/ball, in the base frame."""
+
+    received_ns: np.ndarray
+    """(n,)"""
+    stamp_ns: np.ndarray
+    """(n,)"""
+    position: np.ndarray
+    """(n, 3), m"""
+    velocity: np.ndarray
+    """(n, 3), m/s"""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """A topic of one number or text, such as those under /training."""
+
+    received_ns: np.ndarray
+    """(n,)"""
+    values: np.ndarray
+    """(n,)"""
+
+
+@dataclass(frozen=True)
+class Press:
+    """One key press."""
+
+    received_ns: int
+    source: str
+    key: Key
+
+
+@dataclass(frozen=True)
+class Status:
+    """One report of a node on /diagnostics."""
+
+    received_ns: int
+    ok: bool
+    message: str
+    values: dict[str, str]
+
+    def number(self, key: str) -> float | None:
+        """One of the values as a number; None when there is none."""
+        try:
+            return float(self.values[key])
+        except (KeyError, ValueError):
+            return None

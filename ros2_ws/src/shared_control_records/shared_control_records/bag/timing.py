@@ -1,0 +1,47 @@
+"""How fast a session ran, from what panda_sim_node said of itself."""
+
+from dataclasses import dataclass
+
+from .reader import Bag
+from .recorded import Status
+
+SIMULATOR = 'panda_sim_node'
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Figures of all runs of the simulator in a bag (one, unless it was restarted)."""
+
+    control_rate_hz: float
+    """Ticks a second, pauses excluded."""
+    real_time_factor: float
+    """Simulated over running seconds, pauses excluded."""
+    tick_p50_ms: float
+    """Median duration of a tick, of the longest run."""
+    tick_p99_ms: float
+    """Of the longest run."""
+    late_tick_ratio: float
+    """Part of the ticks that took more than a millisecond."""
+
+
+def simulator_runs(bag: Bag) -> list[Status]:
+    """The last report of each run of the simulator: a run begins where its tick counter begins anew."""
+    statuses = [status for status in bag.statuses.get(SIMULATOR, []) if status.number('ticks') is not None]
+    return [status for status, after in zip(statuses, [*statuses[1:], None], strict=True)
+            if after is None or (after.number('ticks') or 0.0) < (status.number('ticks') or 0.0)]
+
+
+def timing_of(bag: Bag) -> Timing | None:
+    """None when the simulator never reported, or does not report these figures (a real robot)."""
+    runs = [run.values for run in simulator_runs(bag)]
+    try:
+        totals = {key: sum(float(run[key]) for run in runs)
+                  for key in ('ticks', 'late_ticks', 'running_seconds', 'simulated_seconds')}
+        longest = max(runs, key=lambda run: float(run['ticks']))
+        return Timing(
+            control_rate_hz=totals['ticks'] / totals['running_seconds'],
+            real_time_factor=totals['simulated_seconds'] / totals['running_seconds'],
+            tick_p50_ms=float(longest['tick_p50_ms']), tick_p99_ms=float(longest['tick_p99_ms']),
+            late_tick_ratio=totals['late_ticks'] / totals['ticks'])
+    except (KeyError, ValueError, ZeroDivisionError):
+        return None

@@ -1,0 +1,1 @@
+"""``shared-control evaluate``: tests of policies as tables and figures."""

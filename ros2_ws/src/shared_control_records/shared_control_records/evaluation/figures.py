@@ -1,0 +1,104 @@
+"""Figs. 16-19 and 22-24 of the thesis, for one condition."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from shared_control_learning.evaluation.perturbation import PUSHES
+from shared_control_learning.evaluation.result import ProtocolResult
+from shared_control_learning.evaluation.statistics import curve
+
+from ..plotting.plot import Plot
+from ..plotting.style import AGENT, FAINT, GOOD, HUMAN
+
+NUMBERS = {'randomized': (16, 17), 'perturbation': (18, 19), 'trajectory 0.25 Hz': (22, 22),
+           'trajectory 0.5 Hz': (23, 23), 'trajectory 1 Hz': (24, 24)}
+"""The thesis' figures of position and velocity error, by test."""
+
+
+def plots(results: Sequence[ProtocolResult]) -> Iterator[Plot]:
+    """The figures of one test.
+
+    Args:
+        results: of the test, one a policy.
+    """
+    test = results[0].test
+    slug = test.replace(' ', '_').lower()
+    position, velocity = NUMBERS[test]
+    if position == velocity:
+        yield Plot(f'fig{position}_{slug}', partial(_draw_both, results), (8, 6))
+    else:
+        yield Plot(f'fig{position}_{slug}_position_error', partial(_draw_error, results, 'position_error'), (8, 6))
+        yield Plot(f'fig{velocity}_{slug}_velocity_error', partial(_draw_error, results, 'velocity_error'), (8, 6))
+    yield Plot(f'{slug}_manipulability', partial(_draw_manipulability, results), (8, 5))
+
+
+_LABELS = {'position_error': ('Position error (cm)', 100.0), 'velocity_error': ('Velocity error (cm/s)', 100.0)}
+
+
+def _draw_error(results: Sequence[ProtocolResult], track: str, figure: Figure) -> None:
+    """The error as it is above, its magnitude below: errors of both signs cancel in a mean."""
+    _title(figure, results)
+    top, bottom = figure.subplots(2, 1, sharex=True)
+    _draw_curve(top, results, track, absolute=False)
+    _draw_curve(bottom, results, track, absolute=True)
+    bottom.set_xlabel('Time (s)')
+    bottom.set_ylim(bottom=0)
+    _legend(figure)
+
+
+def _draw_both(results: Sequence[ProtocolResult], figure: Figure) -> None:
+    _title(figure, results)
+    top, bottom = figure.subplots(2, 1, sharex=True)
+    _draw_curve(top, results, 'position_error', absolute=False)
+    _draw_curve(bottom, results, 'velocity_error', absolute=False, colour=HUMAN)
+    bottom.set_xlabel('Time (s)')
+    _legend(figure)
+
+
+def _draw_manipulability(results: Sequence[ProtocolResult], figure: Figure) -> None:
+    _title(figure, results)
+    top, bottom = figure.subplots(2, 1, sharex=True)
+    mean, sem = curve(results, 'manipulability')
+    _draw_band(top, results, mean, sem, AGENT)
+    _draw_band(bottom, results, 1 - mean ** 2, 2 * mean * sem, AGENT)
+    top.set_ylabel(r'$k_w=\sqrt{\det(J J^T)}$ (34)')
+    bottom.set(ylabel='$1-k_w^2$ (appendix)', xlabel='Time (s)')
+    _legend(figure)
+
+
+def _title(figure: Figure, results: Sequence[ProtocolResult]) -> None:
+    fallen = sum(int(result.fallen.sum()) for result in results)
+    episodes = sum(len(result.fallen) for result in results)
+    policies = f'{len(results)} policies' if len(results) > 1 else '1 policy'
+    lost = f'; the ball fell in {fallen}' if fallen else ''
+    figure.suptitle(
+        f'Test {results[0].test}: {policies}, {episodes} episode{"s" if episodes > 1 else ""}{lost}',
+        x=0.01, ha='left', fontsize=13, fontweight='bold')
+
+
+def _legend(figure: Figure) -> None:
+    """One for all plots of a figure, as they have the same."""
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc='outside lower center', ncols=3)
+
+
+def _draw_curve(axes: Axes, results: Sequence[ProtocolResult], track: str, absolute: bool, colour: str = AGENT) -> None:
+    label, scale = _LABELS[track]
+    mean, sem = curve(results, track, absolute)
+    _draw_band(axes, results, scale * mean, scale * sem, colour)
+    axes.axhline(0, color=FAINT, linewidth=0.8)
+    axes.set_ylabel(f'|{label.replace(" (", "| (", 1)}' if absolute else label)
+
+
+def _draw_band(axes: Axes, results: Sequence[ProtocolResult], mean: np.ndarray, sem: np.ndarray, colour: str) -> None:
+    seconds = results[0].seconds
+    over = 'policies' if len(results) > 1 else 'episodes'
+    axes.plot(seconds, mean, color=colour, label=f'mean over {over}' if np.isfinite(sem).any() else 'one episode')
+    if np.isfinite(sem).any():
+        axes.fill_between(seconds, mean - sem, mean + sem, color=colour, alpha=0.25, linewidth=0, label='± SEM')
+    if results[0].test == 'perturbation':
+        for (start, end), label in zip(PUSHES, ('push', None), strict=True):
+            axes.axvspan(start, end, color=GOOD, alpha=0.15, linewidth=0, label=label)
+    axes.set_xlim(0, seconds[-1])

@@ -1,0 +1,1 @@
+"""Bags as data sets for others' tools."""

@@ -1,0 +1,36 @@
+"""``shared-control export``: a session's bag as Parquet or as a LeRobot data set, at the policy's rate (50 Hz)."""
+
+import argparse
+from pathlib import Path
+
+FORMATS = ('parquet', 'lerobot')
+
+
+def add_command(commands: argparse._SubParsersAction) -> None:
+    """Add ``export`` to the ``shared-control`` command."""
+    parser = commands.add_parser(
+        'export', help="a session's bag as Parquet or LeRobot data set", description=__doc__,
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument('bag', type=Path, help='bag folder, or a single MCAP file')
+    parser.add_argument('--format', choices=FORMATS, default='parquet')
+    parser.add_argument('--output', type=Path, default=None,
+                        help='file (parquet) or new folder (lerobot); beside the bag when not given')
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Export a bag; the exit code."""
+    # Imported late: pyarrow and the robot's model take a second, which `--help` need not wait for.
+    from ..bag.reader import read_bag
+    from .frames import episode_frames
+    from .lerobot import write_lerobot
+    from .parquet import write_parquet
+    suffix = '.parquet' if args.format == 'parquet' else '_lerobot'
+    output = args.output or args.bag.absolute().with_name(args.bag.stem + suffix)
+    episodes = episode_frames(read_bag(args.bag))
+    if args.format == 'parquet':
+        write_parquet(episodes, output)
+    else:
+        write_lerobot(episodes, output)
+    print(f'{sum(map(len, episodes))} frames of {len(episodes)} episodes in {output}')
+    return 0

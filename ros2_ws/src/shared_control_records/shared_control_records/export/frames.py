@@ -1,0 +1,98 @@
+"""The episodes of a bag, time-aligned at the policy's rate."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from shared_control.control.moments import freshness
+from shared_control.rates import POLICY_PERIOD
+from shared_control.robot.model import PandaModel, pitch
+
+from ..bag.ball_tracks import EpisodeTrack, episode_tracks
+from ..bag.reader import Bag
+from ..bag.recorded import Wrenches
+from ..topics import BASE_FRAME
+
+PERIOD_NS = round(POLICY_PERIOD * 1e9)
+COMMAND_TIMEOUT = 0.1
+"""s: the controller's default; an older moment counts no longer (architecture, "never latch")."""
+
+
+@dataclass(frozen=True, eq=False)
+class EpisodeFrames:
+    """One episode, a row every 20 ms of the robot's time.
+
+    States are those at the beginning of the period; moments are what counted at its end. So a row holds what was seen
+    and what came of it.
+    """
+
+    number: int
+    phase: str
+    """``teach`` or ``test``"""
+    stamp_ns: np.ndarray
+    """(n,)"""
+    q: np.ndarray
+    """(n, 7), rad"""
+    qd: np.ndarray
+    """(n, 7), rad/s"""
+    ball_position: np.ndarray
+    """(n, 3), m, base frame"""
+    ball_velocity: np.ndarray
+    """(n, 3), m/s"""
+    position_error: np.ndarray
+    """(n,), tray centre - ball along base x, m"""
+    pitch: np.ndarray
+    """(n,), of the tray, rad"""
+    m_y_agent: np.ndarray
+    """(n,), M_yai, N m"""
+    m_y_human: np.ndarray
+    """(n,), M_yh, N m"""
+    m_y_applied: np.ndarray
+    """(n,), M_y as the controller applied it, N m"""
+
+    def __len__(self) -> int:
+        return len(self.stamp_ns)
+
+
+def episode_frames(bag: Bag) -> list[EpisodeFrames]:
+    """The finished episodes of a bag, in their order.
+
+    Raises:
+        ValueError: it has none; the message names the bag.
+    """
+    frames = [_frames(bag, track) for track in episode_tracks(bag)]
+    if not frames:
+        raise ValueError(f'the bag {bag.path} holds no finished episode')
+    return frames
+
+
+def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
+    agent = bag.agent.stamp_ns[np.searchsorted(bag.agent.stamp_ns, track.start_ns):]
+    # The agent's stamps are those of the states that it acted on.
+    start_ns = int(agent[0]) if len(agent) and agent[0] - track.start_ns < PERIOD_NS else track.start_ns
+    begin = np.arange(start_ns, track.end_ns, PERIOD_NS)
+    end = begin + PERIOD_NS - 1
+    joints, ball = _newest(bag.joint_states.stamp_ns, begin), _newest(bag.ball.stamp_ns, begin)
+    q, position = bag.joint_states.q[joints], bag.ball.position[ball]
+    model = PandaModel()
+    poses = [(tray[0], pitch(rotation)) for tray, rotation in map(model.tray_pose, q)]
+    tray_x, tilt = np.array(poses, float).reshape(-1, 2).T
+    return EpisodeFrames(
+        track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, bag.ball.velocity[ball],
+        tray_x - position[:, 0], tilt, _moments(bag.agent, end), _moments(bag.human, end), _moments(bag.applied, end))
+
+
+def _newest(stamps_ns: np.ndarray, at_ns: np.ndarray) -> np.ndarray:
+    """Indices of the newest messages at some times; the first message when there is none before."""
+    return (np.searchsorted(stamps_ns, at_ns, 'right') - 1).clip(min=0)
+
+
+def _moments(wrenches: Wrenches, at_ns: np.ndarray) -> np.ndarray:
+    """The moments that count at some times, N m: the newest, faded when it is stale; 0 when there is none."""
+    usable = (wrenches.frame == BASE_FRAME) & np.isfinite(wrenches.m_y)
+    if not usable.any():
+        return np.zeros(len(at_ns))
+    stamps_ns, m_y = wrenches.stamp_ns[usable], wrenches.m_y[usable]
+    newest = _newest(stamps_ns, at_ns)
+    age = (at_ns - stamps_ns[newest]) * 1e-9
+    counts = np.array([freshness(seconds, COMMAND_TIMEOUT) if seconds >= 0.0 else 0.0 for seconds in age])
+    return m_y[newest] * counts

@@ -1,0 +1,132 @@
+"""A bag as a LeRobot data set (format v3.0 of huggingface/lerobot; its ``datasets/dataset_writer.py`` is the model).
+
+    meta/info.json                               features, counts, rate
+    meta/stats.json                              of each feature over all frames
+    meta/tasks.parquet                           the sentence of the task
+    meta/episodes/chunk-000/file-000.parquet     a row an episode, with its statistics
+    data/chunk-000/file-000.parquet              a row a frame, a row group an episode
+
+One file each suffices: an hour of teaching takes 20 MB, the format asks for a new file at 100 MB.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+from shared_control.files import write_atomically
+from shared_control.rates import POLICY_PERIOD
+from shared_control.robot.limits import JOINT_NAMES
+
+from .frames import EpisodeFrames
+
+VERSION = 'v3.0'
+TASK = 'Bring the ball to the centre of the tray and keep it there.'
+FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
+QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
+
+FEATURES: dict[str, dict[str, Any]] = {
+    'observation.state': {'dtype': 'float32', 'names': [
+        *JOINT_NAMES, *(f'{name}_velocity' for name in JOINT_NAMES), 'position_error', 'ball_velocity', 'tray_pitch']},
+    'action': {'dtype': 'float32', 'names': ['m_y_applied']},
+    'complementary_info.action_agent': {'dtype': 'float32', 'names': ['m_y_agent']},
+    'complementary_info.action_human': {'dtype': 'float32', 'names': ['m_y_human']},
+    'timestamp': {'dtype': 'float32', 'names': None},
+    'frame_index': {'dtype': 'int64', 'names': None},
+    'episode_index': {'dtype': 'int64', 'names': None},
+    'index': {'dtype': 'int64', 'names': None},
+    'task_index': {'dtype': 'int64', 'names': None},
+}
+"""SI units. ``action`` is what moved the robot. What agent and human added to it stand beside it under a prefix that
+LeRobot's policies do not take for a further action to be learned."""
+
+
+def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
+    """Write the data set into ``folder``, which is made.
+
+    Raises:
+        FileExistsError: it exists and is not empty.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise FileExistsError(f'{folder} exists already: choose another --output')
+    data, episodes_path = (folder / 'data' / _first_file(), folder / 'meta' / 'episodes' / _first_file())
+    for path in (data, episodes_path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    starts = np.cumsum([0, *map(len, episodes)]).tolist()
+    columns = [_columns(episode, index, start) for index, (episode, start) in
+               enumerate(zip(episodes, starts[:-1], strict=True))]
+    with pq.ParquetWriter(data, _schema(), compression='snappy') as writer:
+        for episode in columns:
+            writer.write_table(pa.Table.from_arrays([_array(episode[name]) for name in FEATURES], schema=_schema()))
+    rows = [{'episode_index': index, 'tasks': [TASK], 'length': len(episodes[index]),
+             'data/chunk_index': 0, 'data/file_index': 0,
+             'dataset_from_index': starts[index], 'dataset_to_index': starts[index + 1],
+             **{f'stats/{feature}/{name}': value for feature, values in _stats(episode).items()
+                for name, value in values.items()},
+             'meta/episodes/chunk_index': 0, 'meta/episodes/file_index': 0} for index, episode in enumerate(columns)]
+    pq.write_table(pa.Table.from_pylist(rows), episodes_path)
+    pd.DataFrame({'task_index': [0]}, index=pd.Index([TASK], name='task')).to_parquet(folder / 'meta' / 'tasks.parquet')
+    whole = {name: np.concatenate([episode[name] for episode in columns]) for name in FEATURES}
+    _write_json(folder / 'meta' / 'stats.json', _stats(whole))
+    _write_json(folder / 'meta' / 'info.json', _info(len(episodes), starts[-1]))  # last: a reader begins with it
+
+
+def _first_file() -> str:
+    return FILE.format(chunk_index=0, file_index=0) + '.parquet'
+
+
+def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.ndarray]:
+    """The features of an episode, each (n, width) in its type."""
+    count = len(episode)
+    state = np.column_stack([episode.q, episode.qd, episode.position_error, episode.ball_velocity[:, 0],
+                             episode.pitch])
+    frames = np.arange(count)
+    values = (state, episode.m_y_applied, episode.m_y_agent, episode.m_y_human, frames * POLICY_PERIOD, frames,
+              np.full(count, index), frames + start, np.zeros(count))
+    return {name: value.reshape(count, -1).astype(feature['dtype'])
+            for (name, feature), value in zip(FEATURES.items(), values, strict=True)}
+
+
+def _shape(feature: dict[str, Any]) -> list[int]:
+    return [len(feature['names']) if feature['names'] else 1]
+
+
+def _schema() -> pa.Schema:
+    """A feature of one number is a column of numbers, a wider one a column of lists of fixed length."""
+    fields = []
+    for name, feature in FEATURES.items():
+        kind, (width,) = pa.type_for_alias(feature['dtype']), _shape(feature)
+        fields.append(pa.field(name, kind if width == 1 else pa.list_(kind, width)))
+    return pa.schema(fields)
+
+
+def _array(values: np.ndarray) -> pa.Array:
+    width = values.shape[1]
+    flat = pa.array(values.ravel())
+    return flat if width == 1 else pa.FixedSizeListArray.from_arrays(flat, width)
+
+
+def _stats(columns: dict[str, np.ndarray]) -> dict[str, dict[str, list]]:
+    """LeRobot's statistics of every feature; lists of the feature's width, ``count`` of length 1."""
+    return {name: {
+        'min': values.min(0).tolist(), 'max': values.max(0).tolist(), 'mean': values.mean(0, float).tolist(),
+        'std': values.std(0, float).tolist(), 'count': [len(values)],
+        **{f'q{round(100 * q):02d}': np.quantile(values, q, axis=0).tolist() for q in QUANTILES},
+    } for name, values in columns.items()}
+
+
+def _info(episodes: int, frames: int) -> dict[str, Any]:
+    return {
+        'codebase_version': VERSION, 'robot_type': 'panda', 'fps': round(1 / POLICY_PERIOD),
+        'total_episodes': episodes, 'total_frames': frames, 'total_tasks': 1, 'splits': {'train': f'0:{episodes}'},
+        'chunks_size': 1000, 'data_files_size_in_mb': 100, 'video_files_size_in_mb': 200,
+        'data_path': f'data/{FILE}.parquet', 'video_path': None,
+        'features': {name: {'dtype': feature['dtype'], 'shape': _shape(feature), 'names': feature['names']}
+                     for name, feature in FEATURES.items()}}
+
+
+def _write_json(path: Path, content: dict[str, Any]) -> None:
+    write_atomically(path, (json.dumps(content, indent=2) + '\n').encode())

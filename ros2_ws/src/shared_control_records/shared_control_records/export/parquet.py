@@ -1,0 +1,42 @@
+"""A bag as one Parquet file: a row every 20 ms, a column a number."""
+
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from shared_control.robot.limits import DOF
+
+from .frames import EpisodeFrames
+
+UNITS = {'seconds': 's', 'stamp_ns': 'ns', 'q': 'rad', 'qd': 'rad/s', 'ball': 'm', 'ball_v': 'm/s',
+         'position_error': 'm', 'pitch': 'rad', 'm_y': 'N m'}
+"""By the beginning of a column's name; the longest that fits counts."""
+
+
+def write_parquet(episodes: list[EpisodeFrames], path: Path) -> None:
+    """Write the episodes to ``path``. Each column carries its unit in the metadata of its field."""
+    table = pa.concat_tables([_table(episode) for episode in episodes])
+    pq.write_table(table, path)
+
+
+def _table(episode: EpisodeFrames) -> pa.Table:
+    joints = range(DOF)
+    columns = {
+        'episode': np.full(len(episode), episode.number), 'phase': np.full(len(episode), episode.phase),
+        'frame': np.arange(len(episode)), 'seconds': (episode.stamp_ns - episode.stamp_ns[0]) * 1e-9,
+        'stamp_ns': episode.stamp_ns,
+        **{f'q{joint + 1}': episode.q[:, joint] for joint in joints},
+        **{f'qd{joint + 1}': episode.qd[:, joint] for joint in joints},
+        **{f'ball_{axis}': episode.ball_position[:, index] for index, axis in enumerate('xyz')},
+        **{f'ball_v{axis}': episode.ball_velocity[:, index] for index, axis in enumerate('xyz')},
+        'position_error': episode.position_error, 'pitch': episode.pitch,
+        'm_y_agent': episode.m_y_agent, 'm_y_human': episode.m_y_human, 'm_y_applied': episode.m_y_applied}
+    arrays = [pa.array(column) for column in columns.values()]
+    return pa.Table.from_arrays(arrays, schema=pa.schema(
+        [pa.field(name, array.type, metadata=_unit(name)) for name, array in zip(columns, arrays, strict=True)]))
+
+
+def _unit(column: str) -> dict[str, str]:
+    fitting = [name for name in UNITS if column.startswith(name)]
+    return {'unit': UNITS[max(fitting, key=len)]} if fitting else {}

@@ -1,0 +1,1 @@
+"""The folder of a session: final test, summary, picture, report."""

@@ -1,0 +1,221 @@
+"""One picture of what happened in a session (``picture.png``)."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import MaxNLocator
+from shared_control.rates import POLICY_PERIOD
+
+from ..bag.ball_tracks import EpisodeTrack
+from ..bag.reader import Bag
+from ..bag.recorded import Wrenches
+from ..plotting.style import AGENT, BAD, FAINT, GOOD, HUMAN, SEQUENCE, STYLE, cross, say_empty
+from .episodes import EpisodeRow
+from .final_test import FinalTest
+
+ERROR_SHOWN = 25.0
+"""cm; the tray's ends are 20 cm from its centre."""
+ENDS_SHOWN = 4
+"""Of many episodes, this many of the first and of the last stand out."""
+MOMENT_BINS = 1500
+"""Across the width of the picture."""
+
+
+def draw_picture(path: Path, title: str, bag: Bag | None, tracks: Sequence[EpisodeTrack],
+                 rows: Sequence[EpisodeRow], test: FinalTest | None) -> None:
+    """Draw what there is of a session; a plot without data says so.
+
+    Args:
+        path: of the PNG.
+        title: who taught whom.
+        tracks: finished episodes; taught ones are drawn.
+        rows: table of episodes; taught ones are drawn.
+    """
+    taught = [track for track in tracks if track.phase == 'teach']
+    rows = [row for row in rows if row.phase == 'teach']
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(13, 11.5), layout=ConstrainedLayoutEngine(
+            w_pad=0.12, h_pad=0.12, hspace=0.04, wspace=0.03))
+        FigureCanvasAgg(figure)
+        figure.suptitle(title, x=0.01, ha='left', fontsize=15, fontweight='bold')
+        grid = figure.add_gridspec(4, 6, height_ratios=(3.2, 1.15, 1.15, 2.2))
+        lessons = figure.add_subplot(grid[0, :3])
+        _draw_lessons(lessons, taught, {row.number for row in rows if row.fallen})
+        _draw_test_tracks(figure.add_subplot(grid[0, 3:], sharey=lessons), test)
+        human = figure.add_subplot(grid[1, :])
+        agent = figure.add_subplot(grid[2, :], sharex=human, sharey=human)
+        _draw_moments(human, agent, bag, taught)
+        _draw_returns(figure.add_subplot(grid[3, :2]), rows)
+        _draw_shares(figure.add_subplot(grid[3, 2:4]), rows)
+        _draw_test_results(figure.add_subplot(grid[3, 4:]), test)
+        figure.savefig(path, dpi=110)
+
+
+def _draw_lessons(axes: Axes, taught: list[EpisodeTrack], fallen: set[int]) -> None:
+    axes.set(title='Taught: the ball in each episode', xlabel='Time in the episode (s)',
+             ylabel='Ball position error (cm)', ylim=(-ERROR_SHOWN, ERROR_SHOWN))
+    if not taught:
+        say_empty(axes, 'no finished episode in the bag')
+        return
+    _draw_centre(axes)
+    numbers = [track.number for track in taught]
+    colours = Normalize(min(numbers), max(max(numbers), min(numbers) + 1))
+    for index, track in enumerate(taught):
+        colour = SEQUENCE(0.92 * (1.0 - colours(track.number)))
+        stands_out = len(taught) <= 2 * ENDS_SHOWN or not ENDS_SHOWN <= index < len(taught) - ENDS_SHOWN
+        axes.plot(track.seconds, 100 * track.position_error, color=colour, alpha=0.9 if stands_out else 0.15)
+        if track.number in fallen:
+            axes.plot(track.seconds[-1], np.clip(100 * track.position_error[-1], -ERROR_SHOWN, ERROR_SHOWN),
+                      'x', color=colour, markeredgewidth=2.5, markersize=9, clip_on=False)
+    if fallen:
+        axes.legend(handles=[cross(FAINT, 'the ball fell')], loc='lower right')
+    if len(taught) > 1:
+        scale = ScalarMappable(colours, SEQUENCE.reversed())
+        bar = axes.figure.colorbar(scale, ax=axes, pad=0.02, aspect=30, label='Episode (early to late)')
+        bar.ax.yaxis.set_major_locator(MaxNLocator(integer=True))
+        bar.outline.set_visible(False)  # type: ignore[operator]
+
+
+def _draw_test_tracks(axes: Axes, test: FinalTest | None) -> None:
+    axes.set(title='Alone: the final test', xlabel='Time in the episode (s)')
+    axes.tick_params(labelleft=False)
+    tracks = [episode for episode in test.episodes if episode.track] if test else []
+    if test is None or not tracks:
+        say_empty(axes, 'not tested' if test is None else 'no tracks were kept; results below')
+        return
+    axes.set_title(f'Alone: {test.successes} of {len(test.episodes)} tests succeed')
+    _draw_centre(axes)
+    for episode in tracks:
+        seconds = np.arange(len(episode.track)) * test.sample_period
+        colour = GOOD if episode.success else BAD
+        axes.plot(seconds, 100 * np.array(episode.track), color=colour, alpha=0.75, linewidth=1.4)
+        if not episode.kept:
+            axes.plot(seconds[-1], np.clip(100 * episode.track[-1], -ERROR_SHOWN, ERROR_SHOWN), 'x', color=colour,
+                      markeredgewidth=2.5, markersize=9, clip_on=False)
+    if not all(episode.kept for episode in tracks):
+        axes.legend(handles=[cross(BAD, 'the ball fell')], loc='lower right')
+
+
+def _draw_centre(axes: Axes) -> None:
+    axes.axhspan(-2, 2, color=GOOD, alpha=0.12, linewidth=0)
+    axes.annotate('centre ± 2 cm', (0.995, -2), xycoords=('axes fraction', 'data'), xytext=(0, -3),
+                  textcoords='offset points', ha='right', va='top', fontsize=8.5, color=GOOD)
+    axes.margins(x=0.01)
+
+
+def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[EpisodeTrack]) -> None:
+    human.set_title('Moments on the tray')
+    human.tick_params(labelbottom=False)
+    if bag is None or not taught:
+        for axes in (human, agent):
+            say_empty(axes, 'nothing recorded')
+        return
+    start, end = taught[0].start_ns, taught[-1].end_ns
+    bound = 1.0
+    for axes, wrenches, colour, label in (
+            (human, bag.human, HUMAN, 'Human\n$M_{yh}$ (N m)'), (agent, bag.agent, AGENT, 'Robot\n$M_{yai}$ (N m)')):
+        seconds, m_y = _moments(wrenches, start, end)
+        explores = wrenches is bag.agent and len(m_y) > 1
+        axes.fill_between(*_envelope(seconds, m_y), color=colour, linewidth=0.9, step='post',
+                          alpha=0.3 if explores else 1.0)
+        if explores:
+            axes.plot(seconds, _moving_mean(m_y), color=colour, linewidth=1.4, label='mean of 0.5 s')
+            axes.legend(loc='upper right', borderpad=0, bbox_to_anchor=(1, 1.28))
+        bound = max(bound, np.abs(m_y).max(initial=0.0))
+        axes.set_ylabel(label)
+        axes.axhline(0, color=FAINT, linewidth=0.8)
+        for index, track in enumerate(taught):
+            left, right = (track.start_ns - start) * 1e-9, (track.end_ns - start) * 1e-9
+            axes.axvspan(left, right, color=FAINT, alpha=0.10 if index % 2 == 0 else 0.03, linewidth=0)
+    if len(taught) <= 30:
+        for track in taught:
+            human.annotate(str(track.number), ((track.start_ns - start) * 1e-9, 1), xytext=(3, -2),
+                           xycoords=('data', 'axes fraction'), textcoords='offset points', va='top',
+                           fontsize=8.5, color=FAINT)
+    human.set(ylim=(-1.12 * bound, 1.12 * bound), xlim=(0, (end - start) * 1e-9))
+    agent.set_xlabel("Robot's time since the first episode (s); shaded and numbered: episodes")
+
+
+def _moments(wrenches: Wrenches, start_ns: int, end_ns: int) -> tuple[np.ndarray, np.ndarray]:
+    """Seconds since the start, and moments, N m, in that order."""
+    chosen = (wrenches.stamp_ns >= start_ns) & (wrenches.stamp_ns <= end_ns) & np.isfinite(wrenches.m_y)
+    stamps, first = np.unique(wrenches.stamp_ns[chosen], return_index=True)
+    return (stamps - start_ns) * 1e-9, wrenches.m_y[chosen][first]
+
+
+def _envelope(seconds: np.ndarray, m_y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Starts of many short spans (s), lowest and highest moment (N m) in each."""
+    if len(seconds) < 2:
+        return seconds, m_y, m_y
+    spans = np.searchsorted(seconds, np.linspace(0, seconds[-1], MOMENT_BINS), 'right') - 1
+    firsts = np.unique(spans.clip(min=0))
+    before = m_y[np.maximum(firsts - 1, 0)]  # so that a step is drawn as a line from old to new
+    return (seconds[firsts], np.minimum(np.minimum.reduceat(m_y, firsts), before),
+            np.maximum(np.maximum.reduceat(m_y, firsts), before))
+
+
+def _moving_mean(m_y: np.ndarray) -> np.ndarray:
+    """Mean over half a second around each moment, N m."""
+    weights = np.ones(round(0.5 / POLICY_PERIOD))
+    return np.convolve(m_y, weights, 'same') / np.convolve(np.ones_like(m_y), weights, 'same')
+
+
+def _draw_returns(axes: Axes, rows: list[EpisodeRow]) -> None:
+    axes.set(title='Return by episode', xlabel='Episode', ylabel='Sum of rewards')
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    points = [(row.number, row.episode_return, row.fallen) for row in rows if row.episode_return is not None]
+    if not points:
+        say_empty(axes, 'no episodes')
+        return
+    numbers, returns, fell = zip(*points, strict=True)
+    axes.plot(numbers, returns, '-', color=AGENT, alpha=0.5)
+    kept = [not f for f in fell]
+    axes.plot(np.array(numbers)[kept], np.array(returns)[kept], 'o', color=AGENT, markersize=6)
+    if any(fell):
+        down = np.array([bool(f) for f in fell])
+        axes.plot(np.array(numbers)[down], np.array(returns)[down], 'x', color=AGENT, markeredgewidth=2.2, markersize=7)
+        axes.legend(handles=[cross(AGENT, 'the ball fell')], loc='lower right')
+    axes.margins(x=0.08, y=0.12)
+
+
+def _draw_shares(axes: Axes, rows: list[EpisodeRow]) -> None:
+    axes.set(title='How much was human', xlabel='Episode', ylabel='Human share of the moment (%)', ylim=(0, 100))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    points = [(row.number, 100 * row.human_share) for row in rows if row.human_share is not None]
+    if not points:
+        say_empty(axes, 'no episodes')
+        return
+    numbers, shares = zip(*points, strict=True)
+    axes.bar(numbers, shares, color=HUMAN, width=0.7)
+    axes.grid(visible=False, axis='x')
+    if len(points) <= 12:
+        for number, share in points:
+            axes.annotate(f'{share:.0f}', (number, share), xytext=(0, 2), textcoords='offset points', ha='center',
+                          fontsize=9)
+
+
+def _draw_test_results(axes: Axes, test: FinalTest | None) -> None:
+    axes.set(title='Alone: error at the end', xlabel='Ball position error at the start (cm)',
+             ylabel='Mean |error| of the last 3 s (cm)')
+    if test is None or not test.episodes:
+        say_empty(axes, 'not tested')
+        return
+    limit = 100 * test.position_error_max
+    top = max(2 * limit, 1.2 * max((100 * e.position_error for e in test.episodes if e.kept), default=0.0))
+    axes.axhspan(0, limit, color=GOOD, alpha=0.12, linewidth=0)
+    for episode in test.episodes:
+        colour = GOOD if episode.success else BAD
+        height = min(100 * episode.position_error, top)
+        axes.plot(100 * episode.ball_start, height, 'o' if episode.kept else 'x', color=colour, clip_on=False,
+                  markersize=7, markeredgewidth=1.0 if episode.kept else 2.5, alpha=0.85)
+    axes.set_ylim(0, top)
+    axes.annotate(f'success: under {limit:.0f} cm, and at rest', (0.99, limit), xycoords=('axes fraction', 'data'),
+                  xytext=(0, 3), textcoords='offset points', ha='right', va='bottom', fontsize=8.5, color=GOOD)

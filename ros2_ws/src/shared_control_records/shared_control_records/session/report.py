@@ -1,0 +1,115 @@
+"""The report of a session: picture.png, summary.json and report.html, from what is in its folder."""
+
+import base64
+import json
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+from shared_control.files import write_atomically
+
+from ..bag.ball_tracks import episode_tracks
+from ..bag.reader import Bag, BagReadError, read_bag
+from .episodes import EpisodeRow, read_episodes
+from .final_test import FinalTest, load_test
+from .folder import SessionFolder
+from .picture import draw_picture
+from .summary import Summary, summarize
+
+_PAGE = Path(__file__).parent / 'page.html'
+STYLE_SHEET = Path(__file__).with_name('page.css')
+"""Of this page and of other reports."""
+_NOT_KNOWN = '–'
+
+
+def write_report(folder: SessionFolder, restarts: int | None = None) -> Summary:
+    """Write picture, summary and report; what is missing in the folder is left out of them.
+
+    Args:
+        folder: of a session that has ended.
+        restarts: how often a node was started again; when None, what an earlier report says.
+
+    Raises:
+        ValueError: a file of the session is damaged; the message names it.
+        OSError: the same, or the folder cannot be written.
+    """
+    if restarts is None:
+        restarts = (folder.read_json(folder.summary) or {}).get('restarts')
+    bag, bag_error = _read(folder)
+    rows, test = read_episodes(folder.episodes), load_test(folder.test)
+    summary = summarize(folder, bag, bag_error, rows, test, restarts)
+    tracks = episode_tracks(bag) if bag else []
+    draw_picture(folder.picture, _title(summary), bag, tracks, rows, test)
+    write_atomically(folder.summary, (json.dumps(summary.as_dict(), indent=2) + '\n').encode())
+    write_atomically(folder.report, render_page(summary, rows, test, folder.picture.read_bytes()).encode())
+    return summary
+
+
+def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None, picture: bytes) -> str:
+    """The report as one HTML page that needs no other file. ``picture`` is a PNG."""
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
+    environment.filters['number'] = _number
+    return environment.from_string(_PAGE.read_text()).render(
+        css=Markup(STYLE_SHEET.read_text()), title=_title(summary), s=summary, rows=rows, test=test,
+        figures=_figures(summary), done=_done(summary), picture=base64.b64encode(picture).decode(),
+        alt='Ball in each episode, final test, moments of human and robot, return and human share by episode')
+
+
+def _read(folder: SessionFolder) -> tuple[Bag | None, str | None]:
+    """The bag, or why it cannot be read."""
+    if not folder.bag.exists():
+        return None, None
+    try:
+        return read_bag(folder.bag), None
+    except BagReadError as error:
+        return None, str(error)
+
+
+def _tutor(summary: Summary) -> str:
+    """Who taught, as a part of a sentence."""
+    if summary.tutor is None:
+        return 'unknown'
+    if summary.simulated_tutor:
+        return f'simulated tutor ({summary.tutor.removeprefix("simulated: ")})'
+    return {'none': 'no tutor', 'keyboard': 'person at the keyboard'}.get(summary.tutor, f'tutor ({summary.tutor})')
+
+
+def _title(summary: Summary) -> str:
+    parts = [summary.preset or 'unknown preset', _tutor(summary) if summary.tutor else 'unknown tutor']
+    if summary.autonomous_success is not None:
+        parts.append(f'alone {summary.autonomous_success} of {summary.autonomous_episodes}')
+    return 'Session: ' + ' · '.join(parts)
+
+
+def _done(summary: Summary) -> str:
+    """What was done, in a sentence or two."""
+    episodes = 'episode' if summary.episodes_taught == 1 else 'episodes'
+    text = (f'The robot learned to balance the ball in {_number(summary.episodes_taught, "d")} {episodes} (preset '
+            f'{summary.preset or "unknown"}). ')
+    if summary.tutor == 'none':
+        text += 'Nobody pressed keys.'
+    else:
+        text += f'Tutor: {_tutor(summary)}, whose keys add to the moment that the robot puts on the tray.'
+    if summary.autonomous_success is not None:
+        text += f' Then the policy was tested alone, in {summary.autonomous_episodes} episodes of random starts.'
+    return text
+
+
+def _figures(summary: Summary) -> list[tuple[str, str]]:
+    """The headline figures: value and what it is."""
+    success = (_NOT_KNOWN if summary.autonomous_success is None
+               else f'{summary.autonomous_success} / {summary.autonomous_episodes}')
+    return [(success, 'tests alone succeed'), (_number(summary.episodes_taught, 'd'), 'episodes taught'),
+            (_number(summary.key_presses, 'd'), 'key presses'), (_duration(summary.duration_s), 'recorded')]
+
+
+def _number(value: Any, form: str) -> str:
+    return _NOT_KNOWN if value is None else format(value, form).replace('-', '−')
+
+
+def _duration(seconds: float | None) -> str:
+    if seconds is None:
+        return _NOT_KNOWN
+    minutes, rest = divmod(round(seconds), 60)
+    return f'{minutes} min {rest} s' if minutes else f'{rest} s'

@@ -1,0 +1,88 @@
+"""``summary.json``: the figures of a session by name."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ..bag.checks import check_bag
+from ..bag.reader import Bag
+from ..bag.timing import timing_of
+from .episodes import EpisodeRow
+from .final_test import FinalTest
+from .folder import SessionFolder
+
+CONTROLLER = 'torque_ctrl_node'
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What is not known is None."""
+
+    preset: str | None
+    tutor: str | None
+    simulated_tutor: bool | None
+    """Whether the person at the keys was a model of one."""
+    duration_s: float | None
+    """From the first to the last message of the bag, by the clock on the wall."""
+    episodes_taught: int | None
+    key_presses: int | None
+    autonomous_success: int | None
+    """Episodes of the final test that succeeded."""
+    autonomous_episodes: int | None
+    """Episodes of the final test."""
+    control_rate_hz: float | None
+    real_time_factor: float | None
+    """Simulated over running seconds, pauses excluded."""
+    tick_ms: dict[str, float] | None
+    """p50 and p99 of the duration of a tick."""
+    late_tick_ratio: float | None
+    """Part of the ticks that took more than a millisecond."""
+    restarts: int | None
+    """Of nodes that died."""
+    bag_checks: list[str] | None
+    """What is wrong with the bag; empty when nothing is."""
+    bag: str | None
+    picture: str | None
+    report: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return asdict(self)
+
+
+def summarize(folder: SessionFolder, bag: Bag | None, bag_error: str | None, rows: list[EpisodeRow],
+              test: FinalTest | None, restarts: int | None) -> Summary:
+    """The figures of a session.
+
+    Args:
+        bag: None when there is none that can be read.
+        bag_error: why it cannot be read.
+        rows: of the table of episodes.
+        test: the final test, if there was one.
+        restarts: of nodes that died; None when not known.
+    """
+    settings = folder.read_json(folder.settings) or {}
+    tutor = settings.get('tutor')
+    timing = timing_of(bag) if bag else None
+    taught = [row for row in rows if row.phase == 'teach']
+    return Summary(
+        preset=settings.get('preset'), tutor=tutor,
+        simulated_tutor=None if tutor is None else str(tutor).startswith('simulated'),
+        duration_s=round((bag.end_ns - bag.start_ns) * 1e-9, 3) if bag else None,
+        episodes_taught=len(taught) if folder.episodes.exists() else None,
+        key_presses=len(bag.presses) if bag else None,
+        autonomous_success=test.successes if test else None,
+        autonomous_episodes=len(test.episodes) if test else None,
+        control_rate_hz=round(timing.control_rate_hz, 2) if timing else None,
+        real_time_factor=round(timing.real_time_factor, 5) if timing else None,
+        tick_ms={'p50': timing.tick_p50_ms, 'p99': timing.tick_p99_ms} if timing else None,
+        late_tick_ratio=round(timing.late_tick_ratio, 6) if timing else None,
+        restarts=restarts,
+        bag_checks=_bag_checks(folder, bag) if bag else [bag_error] if bag_error else None,
+        bag=str(folder.bag) if folder.bag.exists() else None,
+        picture=str(folder.picture), report=str(folder.report))
+
+
+def _bag_checks(folder: SessionFolder, bag: Bag) -> list[str]:
+    controller = folder.ros_parameters(CONTROLLER)
+    return check_bag(bag, moment_limit=float(controller.get('moment_limit', 20.0)),
+                     command_timeout=float(controller.get('command_timeout', 0.1)))

@@ -1,0 +1,75 @@
+"""The folder of a study: the plan, a folder for each run, and one for each real participant."""
+
+import fcntl
+from pathlib import Path
+from typing import IO
+
+from shared_control.files import write_atomically
+
+from .plan import Job, Participant, Plan, load_plan
+
+
+class StudyError(OSError):
+    """A study cannot go on; the message says why and what to do."""
+
+
+class StudyFolder:
+    """Paths of everything that a study keeps.
+
+        plan.yaml                         as it was begun with
+        runs/CONDITION/pNN/               policy, episodes, tests and result of a run
+        people/pNN/                       a real participant: progress.json, practice, a session for each condition
+
+    Args:
+        path: of the folder.
+    """
+
+    def __init__(self, path: Path):
+        self.path = path
+        self.plan = path / 'plan.yaml'
+        self._lock: IO[bytes] | None = None
+
+    @staticmethod
+    def is_at(path: Path) -> bool:
+        """Whether there is a study in ``path``."""
+        return (path / 'plan.yaml').is_file()
+
+    def run(self, job: Job) -> Path:
+        """The folder of a run."""
+        return self.path / 'runs' / job.name
+
+    def person(self, participant: Participant) -> Path:
+        """The folder of a real participant."""
+        return self.path / 'people' / participant.label
+
+    def session(self, job: Job) -> Path:
+        """The folder of the session in which a real participant teaches."""
+        return self.person(job.participant) / job.condition.name
+
+    def begin(self, plan_file: Path, number: int | None = None) -> Plan:
+        """Make the folder, or take it up again; gives the plan.
+
+        Args:
+            plan_file: what the folder was, or will be, begun with.
+            number: claim a participant's folder for this process alone; when None, the runs.
+
+        Raises:
+            PlanError: the plan cannot be used, or has no such participant.
+            StudyError: the folder belongs to another plan, is in use, or cannot be written.
+        """
+        plan, text = load_plan(plan_file), plan_file.read_bytes()
+        try:
+            claimed = self.path if number is None else self.person(plan.participant(number))
+            claimed.mkdir(parents=True, exist_ok=True)
+            self._lock = (claimed / '.lock').open('ab')
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not self.plan.exists():
+                write_atomically(self.plan, text)
+        except BlockingIOError as error:
+            raise StudyError(f'{claimed} is in use: this study is running already') from error
+        except OSError as error:
+            raise StudyError(f'cannot write the study folder {self.path}: {error.strerror}') from error
+        if self.plan.read_bytes() != text:
+            raise StudyError(f'{self.path} holds a study that was begun with another plan ({self.plan}): '
+                             f'choose another --output, or run {self.plan}')
+        return plan

@@ -1,0 +1,111 @@
+"""One run of a study: train, test, keep the result. ``python -m shared_control_records.study.job FOLDER NAME``"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from shared_control.control.references import FREQUENCIES
+from shared_control.seeds import episode_seed
+from shared_control_learning.episode_table import TABLE_NAME, read_rows
+from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
+from shared_control_learning.evaluation.perturbation import run_perturbation
+from shared_control_learning.evaluation.randomized import run_randomized
+from shared_control_learning.evaluation.result import ProtocolResult
+from shared_control_learning.evaluation.trajectory import run_trajectory
+from shared_control_learning.policy_file import POLICY_NAME, load_policy
+from shared_control_learning.presets import preset
+from shared_control_learning.training import train
+
+from ..session.final_test import load_test
+from ..session.folder import SessionFolder
+from .folder import StudyFolder
+from .plan import Job, Plan, load_plan
+from .progress import Progress
+from .result import RunResult, describe, is_done, save_result
+
+
+def run_job(folder: StudyFolder, name: str) -> None:
+    """Do the run called ``name`` and keep its result; one that was killed goes on where it was. All that is random
+    follows from the participant's seed, so it makes no difference where and when it runs.
+
+    Raises:
+        ValueError: there is no such run, or a file of it is damaged.
+        OSError: its folder cannot be written.
+    """
+    plan = load_plan(folder.plan)
+    job = next((job for job in plan.jobs if job.name == name), None)
+    if job is None:
+        raise ValueError(f'{folder.plan} has no run {name!r}')
+    path = folder.run(job)
+    if is_done(path):
+        return
+    path.mkdir(parents=True, exist_ok=True)
+    result = taught_by_a_person if plan.people is not None and job.condition.taught else trained
+    save_result(result(folder, plan, job), path)
+
+
+def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
+    """Train with a simulated tutor or alone, then test."""
+    path, started = folder.run(job), time.monotonic()
+    training = train(
+        preset(job.condition.preset), job.participant.tutor if job.condition.taught else None, job.participant.seed,
+        job.condition.episodes, until_skilled=True, folder=path, evaluate_every=job.condition.evaluate_every)
+    return RunResult(
+        **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
+        episodes=table(path / TABLE_NAME), tests=run_tests(plan, job, path / POLICY_NAME),
+        seconds=time.monotonic() - started)
+
+
+def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
+    """Test what a person has taught. The person said when; skilled is who then passed the session's test."""
+    session = SessionFolder.open(folder.session(job))
+    test = load_test(session.test)
+    if test is None:
+        raise FileNotFoundError(f'{session.test} is missing: the teaching is not finished')
+    episodes = table(session.episodes)
+    passed = test.successes >= len(test.episodes) * SUCCESSES_NEEDED / TEST_EPISODES
+    return RunResult(
+        **describe(job, simulated=False), first_pass=None, skilled=len(episodes) if passed else None,
+        episodes=episodes, tests=run_tests(plan, job, session.policy),
+        seconds=sum(row['seconds'] + row['learn_seconds'] for row in episodes),
+        tlx=Progress.of(folder.person(job.participant)).tlx.get(job.condition.name))
+
+
+def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
+    """What the plan has every policy go through, by name."""
+    learner = load_policy(policy)
+    task = learner.preset.task
+    results = []
+    if 'randomized' in plan.tests:
+        results.append(run_randomized(learner.act, task, seed=episode_seed(TEST_SEED, job.participant.number)))
+    if 'perturbation' in plan.tests:
+        results.append(run_perturbation(learner.act, task))
+    if 'trajectory' in plan.tests:
+        results += [run_trajectory(learner.act, frequency, task) for frequency in FREQUENCIES]
+    return {result.test: result for result in results}
+
+
+def table(path: Path) -> list[dict[str, Any]]:
+    """Taught episodes of an ``episodes.csv``, numbers as numbers."""
+    return [{key: value if key == 'phase' else float(value) for key, value in row.items()}
+            for row in read_rows(path) if row['phase'] == 'teach']
+
+
+def main() -> int:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('folder', type=Path)
+    parser.add_argument('name')
+    args = parser.parse_args()
+    try:
+        run_job(StudyFolder(args.folder), args.name)
+    except (ValueError, OSError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,98 @@
+"""What a run leaves behind: ``result.json`` and the tracks of its tests, ``tests.npz``."""
+
+import io
+import json
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from shared_control.files import write_atomically
+from shared_control_learning.evaluation.result import TRACKS, ProtocolResult
+
+from .plan import Job
+
+RESULT = 'result.json'
+TESTS = 'tests.npz'
+
+
+class ResultError(ValueError):
+    """The result of a run cannot be read; the message names the file."""
+
+
+@dataclass(frozen=True, eq=False)
+class RunResult:
+    """A run that is done."""
+
+    participant: int
+    group: str
+    simulated: bool
+    """Whether the participant was a model of one."""
+    condition: str
+    taught: bool
+    seed: int
+    cap: int
+    """Episodes after which training ended in any case."""
+    first_pass: int | None
+    """Episodes before the first test passed alone."""
+    skilled: int | None
+    """Episodes before the second of two tests in a row was passed; for a real participant, episodes until they said
+    that it has learned it, if it then passed. None: censored at the last episode."""
+    seconds: float
+    """Of computing; for a real participant, of the teaching."""
+    episodes: list[dict[str, Any]]
+    """Rows of ``episodes.csv``, numbers as numbers."""
+    tlx: dict[str, float] | None = None
+    """Raw NASA-TLX of a real participant, by scale, 0..100."""
+    tests: dict[str, ProtocolResult] = field(default_factory=dict)
+    """By the name of the test."""
+
+    @property
+    def label(self) -> str:
+        """As in the names of folders."""
+        return f'{self.condition}/p{self.participant:02d}'
+
+
+def save_result(result: RunResult, folder: Path) -> None:
+    """Keep a result. ``result.json`` comes last and as a whole: a run that has one is done."""
+    arrays: dict[str, Any] = {f'{name}/{track}': getattr(test, track).astype(np.float32)
+                              for name, test in result.tests.items() for track in ('seconds', *TRACKS)}
+    arrays |= {f'{name}/fallen': test.fallen for name, test in result.tests.items()}
+    packed = io.BytesIO()
+    np.savez_compressed(packed, **arrays)
+    write_atomically(folder / TESTS, packed.getvalue())
+    content = {f.name: getattr(result, f.name) for f in fields(result) if f.name != 'tests'}
+    write_atomically(folder / RESULT, (json.dumps(content, indent=1, allow_nan=False) + '\n').encode())
+
+
+def load_result(folder: Path) -> RunResult | None:
+    """The result in a run's folder; None when the run is not done.
+
+    Raises:
+        ResultError: what is there is damaged.
+    """
+    try:
+        content = json.loads((folder / RESULT).read_text())
+        with np.load(folder / TESTS, allow_pickle=False) as packed:
+            arrays = {name: packed[name] for name in packed.files}
+        names = dict.fromkeys(name.rpartition('/')[0] for name in arrays)
+        tests = {name: ProtocolResult(name, **{
+            key: arrays[f'{name}/{key}'] for key in ('seconds', *TRACKS, 'fallen')}) for name in names}
+        return RunResult(**content, tests=tests)
+    except FileNotFoundError:
+        return None
+    except Exception as error:  # a damaged zip or JSON file raises errors of many kinds
+        raise ResultError(f'the result in {folder} is damaged ({error or type(error).__name__}): '
+                          f'remove {folder / RESULT} and run the study again') from error
+
+
+def is_done(folder: Path) -> bool:
+    """Whether a run has its result."""
+    return (folder / RESULT).is_file()
+
+
+def describe(job: Job, simulated: bool) -> dict[str, Any]:
+    """What a result says of its job."""
+    return {'participant': job.participant.number, 'group': job.participant.group, 'simulated': simulated,
+            'condition': job.condition.name, 'taught': job.condition.taught, 'seed': job.participant.seed,
+            'cap': job.condition.episodes}

@@ -1,0 +1,119 @@
+"""The report of a study: one page, its figures as SVG and PNG, its numbers as CSV."""
+
+import base64
+import io
+import math
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import matplotlib
+import pandas as pd
+from markupsafe import Markup
+from matplotlib.figure import Figure
+from shared_control.files import write_atomically
+
+from ..plotting.style import STYLE
+from ..session.report import STYLE_SHEET
+from ..study.folder import StudyFolder
+from .figures import draw_all
+from .measures import Study, load_study, run_table, times
+from .statistics import survival
+from .tables import comparison_table, conditions_table, group_table
+
+_PAGE = Path(__file__).with_name('study.html')
+THESIS_REDUCTION = 0.976
+"""How many episodes fewer with a human (4.7): 17 against 788."""
+
+
+def write_study_report(folder: StudyFolder, output: Path) -> Path:
+    """Write ``report.html``, ``figures/`` and ``data/`` into ``output``; gives the page.
+
+    Raises:
+        ValueError: no run of the study is done yet, or its plan is damaged.
+        OSError: ``output`` cannot be written.
+    """
+    study = load_study(folder)
+    if not study.runs:
+        problems = ''.join(f'\n  {problem}' for problem in study.problems)
+        raise ValueError(f'no run of the study in {folder.path} is done yet{problems}')
+    figures, data = output / 'figures', output / 'data'
+    for path in (figures, data):
+        path.mkdir(parents=True, exist_ok=True)
+    runs = run_table(study)
+    tables = {'runs': runs, 'conditions': conditions_table(study, runs), 'comparisons': comparison_table(study, runs),
+              'groups': group_table(runs)}
+    drawn = []
+    with matplotlib.rc_context({**STYLE, 'svg.hashsalt': 'shared-control'}):
+        for plot, figure, numbers in draw_all(study):
+            tables[plot.name] = numbers
+            for kind in ('svg', 'png'):
+                write_atomically(figures / f'{plot.name}.{kind}', _image(figure, kind))
+            drawn.append((plot, _embedded(figures / f'{plot.name}.svg')))
+    for name, table in tables.items():
+        write_atomically(data / f'{name}.csv', table.to_csv(index=False, float_format='%.6g').encode())
+    page = output / 'report.html'
+    write_atomically(page, _page(study, tables, drawn).encode())
+    return page
+
+
+def _image(figure: Figure, kind: str) -> bytes:
+    image = io.BytesIO()
+    figure.savefig(image, format=kind, dpi=130, metadata={'Date': None} if kind == 'svg' else None)
+    return image.getvalue()
+
+
+def _embedded(svg: Path) -> str:
+    return 'data:image/svg+xml;base64,' + base64.b64encode(svg.read_bytes()).decode()
+
+
+def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list) -> str:
+    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True,
+                                     lstrip_blocks=True)
+    environment.filters['number'] = _number
+    simulated = study.plan.people is None
+    conditions, comparisons, groups = (
+        tables[name].to_dict('records') for name in ('conditions', 'comparisons', 'groups'))
+    for row in comparisons:
+        row['pair'] = f'{row["first"]} beats {row["second"]}'
+    for row in groups:
+        row['row'] = (study.conditions.index(row['condition']), row['measure'])
+    return environment.from_string(_PAGE.read_text()).render(
+        css=Markup(STYLE_SHEET.read_text()), study=study, simulated=simulated, figures=drawn,
+        headlines=_headlines(study), conditions=conditions,
+        measures=list(dict.fromkeys(row['measure'] for row in conditions)), comparisons=comparisons, groups=groups,
+        reduction=_reduction(study), thesis_reduction=THESIS_REDUCTION)
+
+
+def _headlines(study: Study) -> list[tuple[str, str]]:
+    """Value and what it is: episodes to skilled of each condition."""
+    found = []
+    for name in study.conditions:
+        reached = times(study.of(name))
+        median = survival(reached).median.value
+        found.append((_number(median, 'g') if math.isfinite(median) else f'over {int(reached.episodes.max())}',
+                      f'{name}: episodes to skilled, median ({reached.reached.sum()} of {len(reached.reached)} runs '
+                      'got there)'))
+    return found
+
+
+def _reduction(study: Study) -> list[tuple[str, float]]:
+    """Conditions with a teacher, and the share of episodes that they save against learning alone, by medians."""
+    alone = [c.name for c in study.plan.conditions if not c.taught and study.of(c.name)]
+    if not alone:
+        return []
+    without = survival(times(study.of(alone[0]))).median.value
+    medians = {c.name: survival(times(study.of(c.name))).median.value
+               for c in study.plan.conditions if c.taught and study.of(c.name)}
+    return [(name, 1 - median / without) for name, median in medians.items()
+            if math.isfinite(median) and math.isfinite(without)]
+
+
+def _number(value: Any, form: str) -> str:
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return '–'
+    if isinstance(value, float) and math.isinf(value):
+        return '∞'
+    if abs(value) >= 1000:
+        form = '.0f'  # not 4.88e+03
+    return format(value, form).replace('-', '−')

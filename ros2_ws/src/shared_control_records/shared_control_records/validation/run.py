@@ -1,0 +1,103 @@
+"""All of the validation, its table and its JSON."""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from shared_control.control.references import FREQUENCIES, cosine_reference
+from shared_control.files import write_atomically
+from shared_control.rates import CONTROL_PERIOD
+from shared_control.robot.model import PandaModel
+from shared_control_sim.bullet import BallOnTrayWorld
+from tqdm import tqdm
+
+from .model_checks import BOUND, Check, HomeFigures, check_model, home_figures
+from .tracking import GAIN_SETS, SECONDS, SETTLING_SECONDS, Tracking, track
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What was found."""
+
+    checks: list[Check]
+    home: HomeFigures
+    runs: list[Tracking]
+
+    @property
+    def worse_with_terms(self) -> list[float]:
+        """The frequencies, Hz, at which the low gains track worse with the non-linear terms than without them."""
+        rms = {(run.frequency, run.nonlinear_terms): (run.rms, run.rms_settled)
+               for run in self.runs if run.gains == 'low'}
+        return [f for f in FREQUENCIES
+                if any(ours >= theirs for ours, theirs in zip(rms[f, True], rms[f, False], strict=True))]
+
+    @property
+    def passed(self) -> bool:
+        """The model agrees, and the non-linear terms help, as Figs. 9-11 say."""
+        return all(check.passed for check in self.checks) and not self.worse_with_terms
+
+    def table(self) -> str:
+        """For reading."""
+        home = self.home
+        lines = [
+            f'Largest difference at random postures (agreement: {BOUND:g})',
+            *(f'  {"ok  " if c.passed else "FAIL"} {c.difference:8.1e}  {c.name} [{c.unit}]' for c in self.checks),
+            '', 'Reference posture',
+            f'  end effector: Table 2 has it at {_point(home.table_2_flange)} m, it is at {_point(home.flange)} m, '
+            f'{home.distance:.3f} m away',
+            f'  manipulability: k_w = {home.manipulability:.4f}, '
+            f'1 - k_w^2 = {home.one_minus_manipulability_squared:.4f}',
+            '', "RMS error of the tray's velocity along x, mm/s (in brackets: without the first "
+            f'{SETTLING_SECONDS:g} s)',
+            '  gains     Hz   with the non-linear terms       without them']
+        for gains in GAIN_SETS:
+            for frequency in FREQUENCIES:
+                with_terms, without = (
+                    next(r for r in self.runs if (r.gains, r.frequency, r.nonlinear_terms) == (gains, frequency, terms))
+                    for terms in (True, False))
+                lines.append(f'  {gains:<5} {frequency:6.2f} {_rms(with_terms):>25} {_rms(without):>20}')
+        lines.append('  With the low gains the non-linear terms help at every frequency.' if not self.worse_with_terms
+                     else f'  FAIL: with the low gains the non-linear terms do not help at {self.worse_with_terms} Hz.')
+        return '\n'.join(lines)
+
+    def write_json(self, path: Path) -> None:
+        """All figures of the table."""
+        content: dict[str, Any] = {
+            'passed': self.passed,
+            'checks': [{**asdict(check), 'bound': BOUND, 'passed': check.passed} for check in self.checks],
+            'home': asdict(self.home),
+            'tracking': [{
+                'gains': run.gains, 'nonlinear_terms': run.nonlinear_terms, 'frequency_hz': run.frequency,
+                'rms_m_s': run.rms, 'rms_settled_m_s': run.rms_settled, 'max_distance_m': float(run.distance.max()),
+                'manipulability_min': float(run.manipulability.min()),
+                'manipulability_max': float(run.manipulability.max())} for run in self.runs]}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(path, (json.dumps(content, indent=2) + '\n').encode())
+
+
+def validate() -> Validation:
+    """Run all checks, with a progress bar."""
+    model, world = PandaModel(), BallOnTrayWorld()
+    runs = []
+    with tqdm(total=1 + len(FREQUENCIES) * len(GAIN_SETS) * 2, unit='run', disable=None) as progress:
+        progress.set_description('kinematics and dynamics')
+        checks, home = check_model(model), home_figures(model)
+        progress.update()
+        for frequency in FREQUENCIES:
+            reference = cosine_reference(model, frequency, SECONDS, CONTROL_PERIOD)
+            for gains in GAIN_SETS:
+                for nonlinear_terms in (True, False):
+                    progress.set_description(f'{frequency:g} Hz, {gains} gains')
+                    runs.append(track(model, world, gains, nonlinear_terms, frequency, reference))
+                    progress.update()
+    world.close()
+    return Validation(checks, home, runs)
+
+
+def _point(point: tuple[float, float, float]) -> str:
+    return '(' + ', '.join(f'{value:.3f}' for value in point) + ')'
+
+
+def _rms(run: Tracking) -> str:
+    return f'{1e3 * run.rms:.2f} ({1e3 * run.rms_settled:.2f})'

@@ -1,0 +1,114 @@
+"""A bag as Parquet and as a LeRobot data set, read back."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from shared_control.cli import main
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control_records.bag.reader import read_bag
+from shared_control_records.export.frames import episode_frames
+from shared_control_records.export.lerobot import FEATURES, TASK, write_lerobot
+from shared_control_records.export.parquet import write_parquet
+from shared_control_testing import sessions as made
+
+STEPS = (50, 80)
+
+
+@pytest.fixture(scope='module')
+def lessons():
+    return [made.lesson(steps, seed=seed) for seed, steps in enumerate(STEPS)]
+
+
+@pytest.fixture(scope='module')
+def bag(lessons, tmp_path_factory):
+    return made.record(lessons).write(tmp_path_factory.mktemp('made') / 'bag')
+
+
+@pytest.fixture(scope='module')
+def frames(bag):
+    return episode_frames(read_bag(bag))
+
+
+def test_a_frame_a_policy_step_with_who_did_what(frames, lessons):
+    assert tuple(map(len, frames)) == STEPS
+    for frame, lesson in zip(frames, lessons, strict=True):
+        assert (np.diff(frame.stamp_ns) == 20 * made.MS).all()
+        assert frame.m_y_agent == pytest.approx(lesson.m_y_agent)
+        assert frame.m_y_human == pytest.approx(lesson.m_y_human)
+        assert frame.m_y_applied == pytest.approx(lesson.m_y_agent + lesson.m_y_human)
+        assert frame.position_error == pytest.approx(lesson.position_error)
+        assert frame.q == pytest.approx(np.tile(Q_REFERENCE, (len(frame), 1)))
+
+
+def test_a_source_that_falls_silent_counts_no_longer(lessons, tmp_path):
+    recording = made.record(lessons[:1])
+    recording.drop(made.topics.HUMAN_WRENCH, 11, 40)
+    human = episode_frames(read_bag(recording.write(tmp_path / 'bag')))[0].m_y_human
+    assert abs(human[10]) == abs(human[14]) == 5.0
+    assert not human[20:].any()
+
+
+def test_parquet_is_read_back_with_units(frames, tmp_path):
+    write_parquet(frames, tmp_path / 'session.parquet')
+    table = pd.read_parquet(tmp_path / 'session.parquet')
+    assert len(table) == sum(STEPS)
+    assert table.groupby('episode').size().tolist() == list(STEPS)
+    assert table.m_y_applied.to_numpy() == pytest.approx((table.m_y_agent + table.m_y_human).to_numpy())
+    schema = pq.read_schema(tmp_path / 'session.parquet')
+    units = {name: (schema.field(name).metadata or {}).get(b'unit') for name in schema.names}
+    assert units['qd7'] == b'rad/s' and units['q1'] == b'rad' and units['m_y_human'] == b'N m'
+    assert units['ball_x'] == b'm' and units['ball_vx'] == b'm/s' and units['episode'] is None
+
+
+def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
+    """What ``LeRobotDatasetMetadata`` and ``DatasetReader`` of lerobot rely on."""
+    root = tmp_path / 'set'
+    write_lerobot(frames, root)
+    info = json.loads((root / 'meta/info.json').read_text())
+    assert (info['codebase_version'], info['fps']) == ('v3.0', 50)
+    assert (info['total_episodes'], info['total_frames'], info['total_tasks']) == (len(STEPS), sum(STEPS), 1)
+    assert info['splits'] == {'train': f'0:{len(STEPS)}'}
+
+    tasks = pd.read_parquet(root / 'meta/tasks.parquet')
+    assert tasks.index.name == 'task' and tasks.loc[TASK, 'task_index'] == 0
+
+    episodes = pd.read_parquet(root / 'meta/episodes/chunk-000/file-000.parquet')
+    assert episodes.length.tolist() == list(STEPS)
+    assert episodes.dataset_to_index.tolist() == [50, 130] and episodes.dataset_from_index.tolist() == [0, 50]
+    for _, episode in episodes.iterrows():
+        path = root / info['data_path'].format(
+            chunk_index=episode['data/chunk_index'], file_index=episode['data/file_index'])
+        group = pq.ParquetFile(path).read_row_group(episode.episode_index).to_pandas()
+        assert group['index'].tolist() == list(range(episode.dataset_from_index, episode.dataset_to_index))
+        assert (group.episode_index == episode.episode_index).all()
+        assert group.timestamp.to_numpy() == pytest.approx(np.arange(episode.length) / info['fps'], abs=1e-4)
+        assert episode['stats/action/mean'][0] == pytest.approx(group.action.mean(), abs=1e-5)
+
+    schema = pq.read_schema(root / 'data/chunk-000/file-000.parquet')
+    stats = json.loads((root / 'meta/stats.json').read_text())
+    assert schema.names == list(info['features']) == list(stats) == list(FEATURES)
+    for name, feature in info['features'].items():
+        width, = feature['shape']
+        kind = schema.field(name).type
+        assert (kind if width == 1 else kind.value_type) == pa.type_for_alias(feature['dtype'])
+        assert width == 1 or kind.list_size == width == len(feature['names'])
+        assert len(stats[name]['mean']) == width and stats[name]['count'] == [sum(STEPS)]
+
+
+def test_the_command_says_where_and_never_overwrites_a_data_set(bag, tmp_path, monkeypatch, capsys):
+    def run(*arguments):
+        monkeypatch.setattr('sys.argv', ['shared-control', 'export', *map(str, arguments)])
+        return main()
+
+    mcap, = bag.glob('*.mcap')
+    assert run(mcap, '--output', tmp_path / 'one.parquet') == 0
+    assert f'130 frames of 2 episodes in {tmp_path / "one.parquet"}' in capsys.readouterr().out
+    for code, said in ((0, 'frames'), (2, 'exists already')):
+        assert run(bag, '--format', 'lerobot', '--output', tmp_path / 'set') == code
+        assert said in ''.join(capsys.readouterr())
+    assert run(tmp_path / 'none.mcap') == 2
+    assert 'there is no bag' in capsys.readouterr().err

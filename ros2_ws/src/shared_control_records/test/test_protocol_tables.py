@@ -1,0 +1,132 @@
+"""From tracks to figures, tables, files: with tracks whose answers are known."""
+
+import argparse
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+from matplotlib.figure import Figure
+from shared_control_learning.evaluation.result import ProtocolResult
+from shared_control_learning.evaluation.statistics import curve, episode_figures, mean_and_sem, policy_figures
+from shared_control_learning.learn import make_learner
+from shared_control_learning.policy_file import PolicyFileError, save_policy
+from shared_control_learning.presets import preset
+from shared_control_records.evaluation.command import add_command
+from shared_control_records.evaluation.figures import plots
+from shared_control_records.evaluation.policies import load_policies
+from shared_control_records.evaluation.tables import text_table, write_csv, write_json
+
+STEPS = 500
+
+
+def constant(*errors, fallen_after=None, test='randomized'):
+    """Episodes with the ball at rest at constant errors, m; the last one may lose it."""
+    error = np.repeat(np.array(errors)[:, None], STEPS, axis=1)
+    tracks = [error, 0 * error, 0 * error, 0 * error - 2.0, 0 * error + 0.07]
+    fallen = np.zeros(len(errors), bool)
+    if fallen_after is not None:
+        fallen[-1] = True
+        for track in tracks:
+            track[-1, fallen_after:] = np.nan
+    return ProtocolResult(test, np.arange(1, STEPS + 1) * 0.02, *tracks, fallen)
+
+
+def test_figures_of_episodes_end_where_the_ball_fell():
+    kept, fallen = episode_figures(constant(-0.01, 0.1, fallen_after=200))
+    assert (kept['kept'], kept['success'], fallen['kept'], fallen['success']) == (1, 1, 0, 0)
+    assert kept['position_error'] == pytest.approx(0.01) and fallen['position_error_max'] == pytest.approx(0.1)
+    assert kept['m_y_agent'] == 2.0 and kept['one_minus_k_w_squared'] == pytest.approx(1 - 0.07 ** 2)
+
+
+def test_sem_is_the_standard_error_of_what_is_known():
+    mean, sem = mean_and_sem(np.array([[1.0, 1.0, np.nan], [3.0, np.nan, np.nan], [5.0, 2.0, np.nan]]))
+    np.testing.assert_allclose(mean, [3, 1.5, np.nan])
+    np.testing.assert_allclose(sem, [np.std([1, 3, 5], ddof=1) / 3 ** 0.5, np.std([1, 2], ddof=1) / 2 ** 0.5, np.nan])
+
+
+def test_curves_are_over_policies_when_there_are_several():
+    one, other = constant(0.01, -0.03), constant(0.05, 0.05)
+    mean, sem = curve([one], 'position_error')
+    assert mean[0] == pytest.approx(-0.01) and sem[0] == pytest.approx(0.02)
+    mean, sem = curve([one, other], 'position_error')
+    assert mean[0] == pytest.approx(0.02) and sem[0] == pytest.approx(0.03)
+    assert curve([one, other], 'position_error', absolute=True)[0][0] == pytest.approx(0.035)
+
+
+def test_the_table_counts_and_averages():
+    table = text_table({'a': [constant(0.01, 0.01)], 'b': [constant(0.03, 0.03, fallen_after=100)]})
+    a, b, mean, sem = (line.split() for line in table.splitlines()[2:])
+    assert a[1:4] == ['2/2', '2/2', '10.0'] and b[1:4] == ['1/2', '0/2', '30.0']
+    assert mean[1:4] == ['75%', '50%', '20.0'] and sem[4] == '10.0'
+
+
+def test_files_hold_every_sample_once(tmp_path):
+    results = {'a': [constant(0.01, 0.02)], 'b': [constant(0.03, 0.04, fallen_after=100)]}
+    write_csv(results, tmp_path)
+    episodes = pd.read_csv(tmp_path / 'episodes.csv')
+    assert list(episodes.position_error.round(4)) == [0.01, 0.02, 0.03, 0.04]
+    tracks = pd.read_csv(tmp_path / 'randomized_tracks.csv')
+    assert len(tracks) == 3 * STEPS + 100
+    assert set(tracks[tracks.policy == 'b'].groupby('episode').size()) == {STEPS, 100}
+    means = pd.read_csv(tmp_path / 'randomized_mean.csv')
+    assert means.position_error_mean.iloc[-1] == pytest.approx(np.mean([0.015, 0.03]))
+    write_json(results, tmp_path / 'new' / 'r.json', seed=3)
+    content = json.loads((tmp_path / 'new' / 'r.json').read_text())
+    test = content['tests']['randomized']
+    assert content['seed'] == 3 and test['over_policies']['count'] == 2
+    assert test['policies']['b']['mean'] == policy_figures(results['b'][0])
+
+
+@pytest.mark.parametrize(('test', 'numbers'), [('perturbation', ['fig18', 'fig19']), ('trajectory 0.5 Hz', ['fig23'])])
+def test_figures_bear_the_numbers_of_the_thesis(test, numbers):
+    result = constant(0.01, 0.02, test=test)
+    found = list(plots([result, result]))
+    assert [plot.name[:5] for plot in found[:-1]] == numbers
+    for plot in found:
+        figure = Figure(layout='constrained')
+        plot.draw(figure)
+        legend = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert legend == ['mean over policies', '± SEM'] + (['push'] if test == 'perturbation' else [])
+        assert '2 policies, 4 episodes' in figure.get_suptitle()
+
+
+@pytest.fixture
+def session(tmp_path):
+    """Folders with a policy each: as a session has it, and as a training run has it."""
+    for place in ('s/learner', 'run'):
+        (tmp_path / place).mkdir(parents=True)
+        save_policy(make_learner(preset('coached'), 1), tmp_path / place / 'policy.safetensors')
+    return tmp_path
+
+
+def test_policies_are_found_in_folders_and_named_by_what_differs(session):
+    assert list(load_policies([session / 's', session / 'run' / 'policy.safetensors'])) == [
+        's', 'run/policy.safetensors']
+    assert list(load_policies([session / 'run'])) == ['run']
+    with pytest.raises(ValueError, match='twice'):
+        load_policies([session / 's', session / 's' / '..' / 's'])
+    with pytest.raises(PolicyFileError, match='no policy in'):
+        load_policies([session])
+
+
+def evaluate(*arguments):
+    parser = argparse.ArgumentParser()
+    add_command(parser.add_subparsers())
+    args = parser.parse_args(['evaluate', *map(str, arguments)])
+    return args.run(args)
+
+
+def test_the_command_tests_a_policy(session, capsys):
+    assert evaluate(session / 's', '--episodes', 1, '--json', session / 'r.json', '--out', session / 'out') == 0
+    assert 'randomized' in capsys.readouterr().out
+    assert json.loads((session / 'r.json').read_text())['tests']['randomized']['over_policies']['sem'] is None
+    assert (session / 'out' / 'fig16_randomized_position_error.svg').exists()
+
+
+def test_the_command_decides_early(session, capsys):
+    assert evaluate(session / 's', '--until-known', '--json', session / 'r.json') == 0
+    assert 's: does not pass' in capsys.readouterr().out
+    assert json.loads((session / 'r.json').read_text())['passes'] == {'s': False}
+    with pytest.raises(ValueError, match='--until-known'):
+        evaluate(session / 's', '--until-known', '--protocol', 'perturbation')

@@ -1,0 +1,200 @@
+"""Summary, picture and report of a session, whole or with pieces missing."""
+
+import json
+import shutil
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap.writer import Writer
+from shared_control_records.session import bag_metadata as in_bag
+from shared_control_records.session import report
+from shared_control_records.session.bag_report import write_bag_report
+from shared_control_records.session.episodes import read_episodes
+from shared_control_records.session.final_test import load_test, save_test
+from shared_control_records.session.folder import SessionFolder
+from shared_control_records.session.report import write_report
+from shared_control_testing import sessions as made
+
+PNG = b'\x89PNG'
+
+
+@dataclass
+class Episode:
+    """As ``learning.evaluate`` gives it."""
+
+    position_error: np.ndarray
+    velocity: np.ndarray
+    fallen: bool
+    success: bool
+
+
+@dataclass
+class Evaluation:
+    episodes: tuple
+
+
+def evaluation():
+    """19 good episodes and one in which the ball fell."""
+    good = Episode(0.15 * np.exp(-np.arange(500) / 50), np.zeros(500), fallen=False, success=True)
+    bad = Episode(np.linspace(0.1, 0.3, 80), np.ones(80), fallen=True, success=False)
+    return Evaluation((good,) * 19 + (bad,))
+
+
+@pytest.fixture
+def no_picture(monkeypatch):
+    """Drawing takes a second."""
+    monkeypatch.setattr(report, 'draw_picture', lambda path, *_: path.write_bytes(PNG))
+
+
+@pytest.fixture(scope='module')
+def lessons():
+    lessons = [made.lesson(50, seed=seed) for seed in range(3)]
+    lessons[1].fallen = True
+    return lessons
+
+
+@pytest.fixture(scope='module')
+def bag(lessons, tmp_path_factory):
+    return made.record(lessons).write(tmp_path_factory.mktemp('made') / 'bag')
+
+
+@pytest.fixture
+def folder(lessons, bag, tmp_path):
+    folder = SessionFolder.create(tmp_path / 'session')
+    shutil.copytree(bag, folder.bag)
+    made.write_episodes(folder.episodes, lessons)
+    made.write_settings(folder.settings)
+    save_test(evaluation(), folder.test)
+    return folder
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_the_summary_has_the_figures(folder):
+    write_report(folder, restarts=1)
+    summary = json.loads(folder.summary.read_text())
+    assert summary == {
+        'preset': 'coached', 'tutor': 'simulated: expert', 'simulated_tutor': True, 'duration_s': 3.0,
+        'episodes_taught': 3, 'key_presses': 15, 'autonomous_success': 19, 'autonomous_episodes': 20,
+        'control_rate_hz': pytest.approx(999.0), 'real_time_factor': pytest.approx(0.999),
+        'tick_ms': {'p50': 0.61, 'p99': 0.93}, 'late_tick_ratio': 0.01, 'restarts': 1, 'bag_checks': [],
+        'bag': str(folder.bag), 'picture': str(folder.picture), 'report': str(folder.report)}
+
+
+def test_the_report_says_what_matters_and_needs_no_other_file(folder):
+    write_report(folder)
+    page = folder.report.read_text()
+    assert page.index('The tutor was simulated') < page.index('What was done')
+    assert '19 of 20 randomised episodes succeeded' in page
+    assert 'Checked and found whole' in page
+    assert f'ros2 bag play {folder.bag}' in page
+    assert 'src="data:image/png;base64,' in page
+    assert 'http' not in page
+    assert folder.picture.read_bytes().startswith(PNG)
+
+
+@pytest.mark.parametrize(('tutor', 'said'), [
+    ('keyboard', 'Taught by a person'), ('none', 'Nobody taught'), ('<b>', 'Taught by a person (&lt;b&gt;)')])
+@pytest.mark.usefixtures('no_picture')
+def test_who_taught(folder, tutor, said):
+    made.write_settings(folder.settings, tutor)
+    assert write_report(folder).simulated_tutor is False
+    page = folder.report.read_text()
+    assert said in page
+    assert 'The tutor was simulated' not in page
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_writing_it_again_keeps_what_only_the_session_knew(folder):
+    write_report(folder, restarts=2)
+    assert write_report(folder).restarts == 2
+
+
+def test_an_empty_folder_gives_a_report_full_of_gaps(tmp_path):
+    folder = SessionFolder.create(tmp_path / 'session')
+    summary = write_report(folder).as_dict()
+    assert {name for name, value in summary.items() if value is not None} == {'picture', 'report'}
+    page = folder.report.read_text()
+    assert 'It is not known who taught' in page
+    assert 'Not tested' in page
+    assert 'There is no bag' in page
+    assert folder.picture.read_bytes().startswith(PNG)
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_a_bag_that_cannot_be_read_is_reported(folder):
+    (folder.bag / 'metadata.yaml').unlink()
+    summary = write_report(folder)
+    assert len(summary.bag_checks) == 1
+    assert 'was not finished' in summary.bag_checks[0]
+    assert summary.key_presses is None
+    assert summary.autonomous_success == 19
+
+
+def test_a_test_is_kept_and_read_back(tmp_path):
+    saved = save_test(evaluation(), tmp_path / 'test.json')
+    assert load_test(tmp_path / 'test.json') == saved
+    assert json.loads((tmp_path / 'test.json').read_text())['successes'] == 19
+    assert saved.successes == 19
+    assert not saved.episodes[-1].kept
+    assert saved.episodes[0].ball_start == pytest.approx(0.15)
+    assert len(saved.episodes[0].track) == 100
+    assert load_test(tmp_path / 'none.json') is None
+
+
+def annotated(bag, path, content):
+    """Copy a bag's file and put a session's record into the copy."""
+    with bag.open('rb') as source, path.open('wb') as target:
+        writer = Writer(target)
+        writer.start(profile='ros2')
+        reader = make_reader(source)
+        summary = reader.get_summary()
+        kinds = {schema.id: writer.register_schema(schema.name, schema.encoding, schema.data)
+                 for schema in summary.schemas.values()}
+        channels = {channel.id: writer.register_channel(
+            channel.topic, channel.message_encoding, kinds[channel.schema_id], channel.metadata)
+            for channel in summary.channels.values()}
+        for _, channel, message in reader.iter_messages():
+            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
+        writer.add_metadata(in_bag.RECORD, content)
+        writer.finish()
+
+
+def test_the_bag_alone_gives_the_same_report(folder, tmp_path):
+    original = write_report(folder, restarts=1)
+    annotated(next(folder.bag.glob('*.mcap')), tmp_path / 'session.mcap', in_bag.pack(folder, restarts=1))
+    shutil.rmtree(folder.path)
+    page = write_bag_report(tmp_path / 'session.mcap', tmp_path / 'again')
+    again = json.loads((page.parent / 'summary.json').read_text())
+    places = ('bag', 'picture', 'report')
+    assert {**again, **dict.fromkeys(places)} == {**original.as_dict(), **dict.fromkeys(places)}
+    assert '19 of 20 randomised episodes succeeded' in page.read_text()
+    assert (page.parent / 'picture.png').read_bytes().startswith(PNG)
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_a_bag_of_a_session_that_was_killed_tells_what_its_topics_do(bag, lessons, tmp_path):
+    page = write_bag_report(bag, tmp_path / 'again')
+    assert 'The tutor was simulated' in page.read_text()
+    rows = read_episodes(page.parent / 'learner' / 'episodes.csv')
+    assert [(row.number, row.episode_return) for row in rows] == [(1, -100.0), (2, -100.0), (3, -100.0)]
+    with pytest.raises(OSError, match='already holds a session'):
+        write_bag_report(bag, tmp_path / 'again')
+
+
+def test_damaged_tables_are_named(tmp_path):
+    (tmp_path / 'test.json').write_text('{"episodes": [{"success": true}]}')
+    with pytest.raises(ValueError, match=r'test\.json'):
+        load_test(tmp_path / 'test.json')
+    (tmp_path / 'episodes.csv').write_text('episode,phase\n1,teach\nx,teach\n')
+    with pytest.raises(ValueError, match=r'episodes.csv, line 3'):
+        read_episodes(tmp_path / 'episodes.csv')
+    assert read_episodes(tmp_path / 'none.csv') == []
+
+
+def test_columns_are_found_by_name(tmp_path):
+    (tmp_path / 'episodes.csv').write_text('phase,extra,human_share,episode,return,fallen\ntest,7,0.25,4,-3.5,1\n')
+    row, = read_episodes(tmp_path / 'episodes.csv')
+    assert (row.number, row.phase, row.human_share, row.episode_return, row.fallen) == (4, 'test', 0.25, -3.5, True)
+    assert row.seconds is None

@@ -1,0 +1,112 @@
+"""Plans of studies: what they hold, and what is said of wrong ones."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+from shared_control.teaching.profiles import profile
+from shared_control_records.study.folder import StudyError, StudyFolder
+from shared_control_records.study.plan import PlanError, draw_tutor, load_plan
+
+EXAMPLES = Path(__file__).parents[4] / 'studies'
+PLAN = """
+seed: 3
+participants:
+  simulated: {expert: 1, low: 2}
+conditions:
+  coached: {episodes: 5}
+  alone: {preset: autonomous, taught: false, episodes: 9, evaluate_every: 3}
+"""
+REAL = """
+participants: {real: 4, consent: You may stop at any time.}
+conditions: {coached: , thesis: , autonomous: {taught: false}}
+"""
+
+
+@pytest.fixture
+def plan_file(tmp_path):
+    def write(text):
+        path = tmp_path / 'plan.yaml'
+        path.write_text(text)
+        return path
+
+    return write
+
+
+def test_every_participant_in_every_condition_from_one_seed(plan_file):
+    plan = load_plan(plan_file(PLAN))
+    assert [(p.number, p.group) for p in plan.participants] == [(1, 'expert'), (2, 'low'), (3, 'low')]
+    assert [job.name for job in plan.jobs] == [
+        'alone/p01', 'alone/p02', 'alone/p03', 'coached/p01', 'coached/p02', 'coached/p03']
+    assert len({participant.seed for participant in plan.participants}) == 3
+    assert load_plan(plan_file(PLAN)) == plan, 'the same file gives the same participants'
+    assert load_plan(plan_file(PLAN.replace('seed: 3', 'seed: 4'))).participants != plan.participants
+
+
+def test_simulated_participants_differ_around_their_profile():
+    drawn = [draw_tutor('high', 0.15, seed) for seed in range(200)]
+    for field in fields(drawn[0]):
+        base, values = getattr(profile('high'), field.name), [getattr(tutor, field.name) for tutor in drawn]
+        if type(base) is float and base:
+            assert len(set(values)) == 200
+            assert sum(values) / 200 == pytest.approx(base, rel=0.06)
+        else:
+            assert set(values) == {base}
+    assert draw_tutor('low', 0.0, 1) == profile('low')
+
+
+def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
+    plan = load_plan(plan_file(REAL))
+    assert plan.people.consent == 'You may stop at any time.' and plan.people.minutes == 45.0
+    orders = [[condition.name for condition in plan.order(participant)] for participant in plan.participants]
+    assert orders == [['coached', 'thesis'], ['thesis', 'coached']] * 2
+
+
+@pytest.mark.parametrize(('old', 'new', 'said'), [
+    ('seed: 3', 'sed: 3', 'no key sed; there are conditions, participants, seed, tests'),
+    ('seed: 3', 'seed: -1', 'seed is -1, expected a whole number of at least 0'),
+    ('expert: 1', 'expert: 0', 'expert is 0'),
+    ('expert: 1', 'wizard: 1', "no profile 'wizard'; there are expert"),
+    ('coached: {', 'coach: {', "conditions.coach.preset: no preset 'coach'; there are coached"),
+    ('episodes: 5', 'episodes: five', "episodes is 'five', expected a whole number"),
+    ('taught: false', 'taught: maybe', "conditions.alone.taught is 'maybe', expected true or false"),
+    ('conditions:', 'tests: [jump]\nconditions:', 'tests: no jump; there are randomized'),
+    ('alone:', '../alone:', 'a condition is named by letters'),
+    ('{expert: 1, low: 2}', '[expert]', 'simulated is'),
+    (PLAN, 'seed: 3\nparticipants: {simulated: {low: 1}}', 'the plan lacks conditions'),
+    (PLAN, '- 1', 'the plan is [1], expected keys'),
+    (PLAN, 'a: [', 'plan.yaml'),
+    (PLAN, REAL.replace('consent: You may stop at any time.', "consent: ''"), 'participants.consent'),
+])
+def test_a_wrong_plan_is_named_with_its_key(plan_file, old, new, said):
+    path = plan_file(PLAN.replace(old, new))
+    with pytest.raises(PlanError) as error:
+        load_plan(path)
+    assert said in str(error.value) and str(path) in str(error.value)
+
+
+def test_a_missing_participant_is_said(plan_file):
+    plan = load_plan(plan_file(REAL))
+    with pytest.raises(PlanError, match='no participant 5: this study has the numbers 1 to 4'):
+        plan.participant(5)
+
+
+def test_a_folder_belongs_to_one_plan_and_one_process(plan_file, tmp_path):
+    folder = StudyFolder(tmp_path / 'study')
+    folder.begin(plan_file(PLAN))
+    with pytest.raises(StudyError, match='running already'):
+        StudyFolder(tmp_path / 'study').begin(plan_file(PLAN))
+    del folder
+    with pytest.raises(StudyError, match='begun with another plan'):
+        StudyFolder(tmp_path / 'study').begin(plan_file(PLAN.replace('low: 2', 'low: 1')))
+
+
+@pytest.mark.parametrize('path', sorted(EXAMPLES.glob('*.yaml')), ids=lambda path: path.name)
+def test_the_examples_are_good_plans(path):
+    assert load_plan(path).jobs
+
+
+def test_the_examples_hold_the_thesis_study():
+    plan = load_plan(EXAMPLES / 'thesis.yaml')
+    assert len(plan.participants) == 24
+    assert [condition.name for condition in plan.conditions] == ['coached', 'thesis', 'autonomous']

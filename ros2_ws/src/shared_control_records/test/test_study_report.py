@@ -1,0 +1,123 @@
+"""Statistics of a study, and its report."""
+
+import csv
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shared_control.cli import main
+from shared_control_records.study.folder import StudyFolder
+from shared_control_records.study.result import RESULT, TESTS
+from shared_control_records.study_report.measures import load_study, run_table
+from shared_control_records.study_report.report import write_study_report
+from shared_control_records.study_report.statistics import Times, beats, bootstrap, improvement, iqm, sooner, survival
+from shared_control_records.study_report.tables import comparison_table, conditions_table
+from shared_control_testing.studies import made_study
+
+PLAN = """
+participants: {simulated: {expert: 2, high: 3, low: 3}}
+conditions: {coached: {episodes: 20}, autonomous: {episodes: 40, taught: false}}
+"""
+
+
+@pytest.fixture(scope='module')
+def plan(tmp_path_factory):
+    path = tmp_path_factory.mktemp('plan') / 'plan.yaml'
+    path.write_text(PLAN)
+    return path
+
+
+@pytest.fixture(scope='module')
+def folder(plan, tmp_path_factory):
+    return made_study(tmp_path_factory.mktemp('made') / 'study', plan)
+
+
+def test_the_interquartile_mean_is_that_of_the_middle_half():
+    assert iqm(np.array([-1e6, 1.0, 2.0, 1e6])) == 1.5
+    assert iqm(np.arange(8.0)) == pytest.approx(np.mean([2, 3, 4, 5]))
+
+
+def test_a_stratified_bootstrap_never_mixes_groups():
+    """All spread lies between the groups, so whoever resamples within them finds none."""
+    values, groups = np.repeat([0.0, 10.0], 6), np.repeat(['low', 'high'], 6)
+    estimate = bootstrap(values, groups, lambda rows: rows.mean(axis=-1))
+    assert (estimate.low, estimate.value, estimate.high) == (5.0, 5.0, 5.0)
+    pooled = bootstrap(values, np.zeros(12), lambda rows: rows.mean(axis=-1))
+    assert pooled.low < 4.0 < 6.0 < pooled.high
+
+
+def test_the_bootstrap_covers_the_truth_as_often_as_it_says():
+    random = np.random.default_rng(1)
+    covered = 0
+    for trial in range(200):
+        estimate = bootstrap(random.normal(3.0, 1.0, 24), np.zeros(24), lambda rows: rows.mean(axis=-1), seed=trial)
+        covered += estimate.low <= 3.0 <= estimate.high
+    assert 180 <= covered <= 199
+
+
+def test_survival_counts_who_was_given_up():
+    curve = survival(Times(np.array([3.0, 5.0, 5.0, 8.0, 20.0, 20.0]), np.array([1, 1, 1, 1, 0, 0], bool)))
+    assert curve.episodes.tolist() == [0, 3, 5, 8, 20]
+    assert curve.waiting == pytest.approx([1, 5 / 6, 1 / 2, 1 / 3, 1 / 3])
+    assert curve.median.value == 5.0 and curve.median.low == 3.0 and np.isinf(curve.median.high)
+    assert (curve.low <= curve.waiting).all() and (curve.waiting <= curve.high).all()
+    never = survival(Times(np.array([20.0, 20.0]), np.array([False, False])))
+    assert np.isinf(never.median.value)
+
+
+def test_who_was_sooner_is_a_tie_where_nobody_knows():
+    first = Times(np.array([3.0, 20.0, 20.0, 9.0, 20.0]), np.array([1, 0, 0, 1, 0], bool))
+    second = Times(np.array([9.0, 12.0, 40.0, 9.0, 30.0]), np.array([1, 1, 0, 1, 1], bool))
+    assert sooner(first, second).tolist() == [1.0, 0.0, 0.5, 0.5, 0.5]
+    assert sooner(second, first).tolist() == [0.0, 1.0, 0.5, 0.5, 0.5]
+    assert beats(np.array([1.0, 2.0, 2.0]), np.array([2.0, 1.0, 2.0]), lower_is_better=True).tolist() == [1, 0, 0.5]
+    assert improvement(np.array([1.0, 1.0]), np.zeros(2)).value == 1.0
+
+
+def test_tables_count_every_run(folder):
+    study = load_study(folder)
+    runs = run_table(study)
+    assert len(runs) == 16
+    conditions = conditions_table(study, runs).set_index(['condition', 'measure'])
+    reached = sum(run.skilled is not None for run in study.of('autonomous'))
+    assert conditions.loc[('autonomous', 'Episodes to skilled (median)'), 'basis'] == f'{reached} of 8 skilled'
+    comparisons = comparison_table(study, runs)
+    assert set(comparisons.pairs) == {8}
+    assert comparisons.probability.between(0, 1).all()
+    assert comparisons.set_index('measure').probability['Episodes to skilled'] == 1.0
+
+
+def test_the_report_is_one_page_with_its_figures_and_numbers(folder, tmp_path):
+    page = write_study_report(folder, tmp_path / 'report').read_text()
+    assert page.index('All participants were simulated') < page.index('In short')
+    figures = sorted(path.stem for path in (tmp_path / 'report/figures').glob('*.svg'))
+    assert [int(name[3:5]) for name in figures] == list(range(14, 25))
+    assert figures == sorted(path.stem for path in (tmp_path / 'report/figures').glob('*.png'))
+    assert page.count('src="data:image/svg+xml;base64,') == 11
+    assert not re.search(r'(src|href)="(?!data:)', page), 'needs no other file'
+    for name in (*figures, 'runs', 'conditions', 'comparisons', 'groups'):
+        with (tmp_path / f'report/data/{name}.csv').open() as file:
+            assert len(list(csv.DictReader(file))) > 1
+    with (tmp_path / 'report/data/fig16_randomized_position.csv').open() as file:
+        rows = [row for row in csv.DictReader(file) if row['policies'] == 'All' and row['condition'] == 'coached']
+    starts = [100 * run.tests['randomized'].position_error[:, 0].mean() for run in load_study(folder).of('coached')]
+    assert len(rows) == 500 and rows[0]['n'] == '8'
+    assert float(rows[0]['mean']) == pytest.approx(np.mean(starts), rel=1e-4)
+    assert float(rows[0]['sem']) == pytest.approx(np.std(starts, ddof=1) / np.sqrt(8), rel=1e-4)
+
+
+def test_what_is_unfinished_or_damaged_is_left_out_and_said(plan, tmp_path, monkeypatch, capsys):
+    folder = made_study(tmp_path / 'study', plan, missing=2)
+    damaged, torn = (folder.path / 'runs/autonomous' / label for label in ('p01', 'p02'))
+    (damaged / TESTS).write_bytes(b'PK\x03\x04 half a zip')
+    (torn / RESULT).unlink()
+    study = load_study(folder)
+    assert len(study.runs) == 12
+    assert len(study.problems) == 1 and str(damaged) in study.problems[0]
+
+    empty = StudyFolder(tmp_path / 'empty')
+    empty.begin(plan)
+    monkeypatch.setattr('sys.argv', ['shared-control', 'report', str(empty.path)])
+    assert main() == 2
+    assert f'no run of the study in {Path(empty.path)} is done yet' in capsys.readouterr().err

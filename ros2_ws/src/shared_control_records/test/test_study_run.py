@@ -1,0 +1,133 @@
+"""Doing the runs of a study: killed half-way, on a full disk, on a Ray cluster."""
+
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from shared_control.cli import main
+from shared_control_learning.episode_table import read_rows
+from shared_control_records.study.folder import StudyFolder
+from shared_control_records.study.plan import load_plan
+from shared_control_records.study.pool import on_ray
+from shared_control_records.study.result import is_done, load_result
+from shared_control_testing.studies import made_study
+
+PLAN = """
+participants: {simulated: {expert: 1, high: 1}}
+conditions: {autonomous: {episodes: 2, taught: false, evaluate_every: 2}}
+tests: []
+"""
+SECONDS = 600.0
+"""More than enough for what is waited for here."""
+
+
+@pytest.fixture
+def plan(tmp_path):
+    path = tmp_path / 'plan.yaml'
+    path.write_text(PLAN)
+    return path
+
+
+def wait_until(condition):
+    deadline = time.monotonic() + SECONDS
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def workers(folder):
+    """Processes that do runs of a study."""
+    found = []
+    for path in Path('/proc').glob('[0-9]*/cmdline'):
+        try:
+            arguments = path.read_bytes().split(b'\0')
+        except OSError:  # it has just ended
+            continue
+        if b'shared_control_records.study.job' in arguments and str(folder).encode() in arguments:
+            found.append(int(path.parent.name))
+    return found
+
+
+def fill(path):
+    """Leave no room on a disk."""
+    with suppress(OSError), path.open('wb', buffering=0) as file:
+        while True:
+            file.write(bytes(4096))
+
+
+def test_a_study_that_is_killed_goes_on_with_nothing_lost_and_nothing_twice(plan, tmp_path):
+    folder = StudyFolder(tmp_path / 'study')
+    first, second = (folder.run(job) for job in load_plan(plan).jobs)
+    command = [sys.executable, '-m', 'shared_control', 'study', str(plan), '--output', str(folder.path),
+               '--workers', '1']
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as study:
+        try:
+            wait_until(lambda: is_done(first) and len(read_rows(second / 'episodes.csv')) == 1)
+        finally:
+            study.kill()
+    wait_until(lambda: not workers(folder.path))
+    assert not is_done(second)
+    kept = {path: path.stat().st_mtime_ns for path in first.iterdir()}
+    again = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
+    assert again.returncode == 0, again.stderr
+    assert 'autonomous/p01' not in again.stdout and 'autonomous/p02: not skilled' in again.stdout
+    assert {path: path.stat().st_mtime_ns for path in first.iterdir()} == kept
+    assert [row['episode'] for row in load_result(second).episodes] == [1, 2]
+
+
+def test_what_is_finished_before_the_disk_is_full_stays_usable(plan, tmp_path, monkeypatch, capfd):
+    disk = tmp_path / 'disk'
+    disk.mkdir()
+    mounted = subprocess.run(['mount', '-t', 'tmpfs', '-o', 'size=4m', 'tmpfs', disk], capture_output=True, check=False)
+    if mounted.returncode:
+        pytest.skip(f'a small disk cannot be mounted here: {mounted.stderr.decode().strip()}')
+    try:
+        folder = made_study(disk / 'study', plan, missing=1)
+        del folder._lock
+        fill(disk / 'filler')
+        monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(folder.path)])
+        assert main() == 2
+        said = capfd.readouterr().err
+        assert '1 of 2 runs failed' in said and 'autonomous/p02: [Errno 28] No space left on device' in said
+        assert 'start the same command again' in said
+        assert load_result(folder.run(load_plan(plan).jobs[0])) is not None
+
+        (disk / 'filler').unlink()
+        assert main() == 0
+        assert is_done(folder.run(load_plan(plan).jobs[1]))
+    finally:
+        subprocess.run(['umount', '--lazy', disk], check=True)
+
+
+def test_a_run_that_fails_is_named_with_its_reason(plan, tmp_path, monkeypatch, capfd):
+    folder = made_study(tmp_path / 'study', plan, missing=1)
+    del folder._lock
+    run = folder.run(load_plan(plan).jobs[1])
+    run.mkdir(parents=True)
+    (run / 'policy.safetensors').write_bytes(b'half a policy')
+    (run / 'run.json').write_text('{')
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(folder.path)])
+    assert main() == 2
+    said = capfd.readouterr().err
+    assert f'autonomous/p02: {run}' in said and 'What is finished is kept' in said
+
+
+def test_a_local_ray_cluster_does_the_same_list(plan, tmp_path):
+    pytest.importorskip('ray', reason="an extra: pip install 'shared_control[ray]'")
+    folder = StudyFolder(tmp_path / 'study')
+    folder.begin(plan)
+    names = [job.name for job in load_plan(plan).jobs]
+    ended = [outcome for outcomes in on_ray(folder.path, [*names, 'autonomous/p09'], 'local') for outcome in outcomes]
+    assert {outcome.name: outcome.error is None for outcome in ended} == {
+        **dict.fromkeys(names, True), 'autonomous/p09': False}
+    assert all(is_done(folder.run(job)) for job in load_plan(plan).jobs)
+
+
+def test_without_a_cluster_that_is_said(plan, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(tmp_path / 'study'),
+                                     '--ray', 'nowhere'])
+    assert main() == 2
+    assert 'Ray' in capsys.readouterr().err

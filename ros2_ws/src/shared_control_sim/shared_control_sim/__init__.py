@@ -1,0 +1,1 @@
+"""Simulated physics: worlds, an effort-controlled arm, and the plant in this process."""

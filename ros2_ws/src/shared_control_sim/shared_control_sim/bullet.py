@@ -1,0 +1,136 @@
+"""PyBullet: the arm, the tray on its flange, and a ball."""
+
+from operator import itemgetter
+from pathlib import Path
+
+import numpy as np
+import pybullet
+from panda_tray_description import URDF_PATH
+from shared_control.robot.limits import DOF, JOINT_NAMES, TORQUE_MAX, clamp_torque
+from shared_control.robot.model import GRAVITY
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control.tasks.balance.scene import BALL_START_Y, BALL_START_Z, TRAY_HOME_X, Ball
+
+_POSITION, _VELOCITY = itemgetter(0), itemgetter(1)
+"""Of what PyBullet says of a joint."""
+
+
+class BallOnTrayWorld:
+    """A Panda that takes joint torques, with a ball on its tray.
+
+    An episode depends on nothing that came before it: :meth:`reset` restores a saved state of the whole world,
+    because PyBullet keeps contacts and torques when only bodies are put back. Two worlds given the same torques from
+    the same start go through the same states, bit for bit.
+
+    Args:
+        ball: the ball.
+        dt: length of a tick, s.
+        urdf: the robot's description.
+    """
+
+    def __init__(self, ball: Ball = Ball(), dt: float = 0.001, urdf: Path = URDF_PATH):
+        self.dt = dt
+        self.client = pybullet.connect(pybullet.DIRECT)
+        pybullet.setGravity(0, 0, -GRAVITY, self.client)
+        pybullet.setTimeStep(dt, self.client)
+        flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_IGNORE_VISUAL_SHAPES
+        self.arm = pybullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
+        self._find_links()
+        self._add_ball(ball)
+        for index, q in zip(self._joints, Q_REFERENCE, strict=True):
+            pybullet.resetJointState(self.arm, index, q, 0.0, physicsClientId=self.client)
+        self._holding_effort = self._gravity_torque()
+        self._home = pybullet.saveState(self.client)
+        self.effort = self._holding_effort
+        """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
+        self._brakes = False
+        self._push: np.ndarray | None = None
+        self.reset(TRAY_HOME_X)
+
+    def _find_links(self) -> None:
+        count = pybullet.getNumJoints(self.arm, physicsClientId=self.client)
+        info = [pybullet.getJointInfo(self.arm, i, physicsClientId=self.client) for i in range(count)]
+        index = {record[1].decode(): record[0] for record in info}
+        self._joints = [index[name] for name in JOINT_NAMES]
+        self.tray = index['panda_tray_joint']
+        for link in range(-1, count):
+            pybullet.changeDynamics(
+                self.arm, link, linearDamping=0, angularDamping=0, jointDamping=0, physicsClientId=self.client)
+        self._release_brakes()
+
+    def _add_ball(self, ball: Ball) -> None:
+        shape = pybullet.createCollisionShape(
+            pybullet.GEOM_SPHERE, radius=ball.radius, physicsClientId=self.client)
+        self.ball = pybullet.createMultiBody(
+            ball.mass, shape, -1, [TRAY_HOME_X, BALL_START_Y, BALL_START_Z], physicsClientId=self.client)
+        pybullet.changeDynamics(
+            self.ball, -1, lateralFriction=ball.friction, rollingFriction=0, spinningFriction=0, restitution=0,
+            linearDamping=0, angularDamping=0, physicsClientId=self.client)
+        pybullet.changeDynamics(
+            self.arm, self.tray, lateralFriction=1.0, restitution=0, physicsClientId=self.client)
+
+    def _gravity_torque(self) -> np.ndarray:
+        still = [0.0] * DOF
+        return np.array(pybullet.calculateInverseDynamics(
+            self.arm, list(Q_REFERENCE), still, still, physicsClientId=self.client))
+
+    def reset(self, ball_x: float) -> None:
+        """Arm at rest at the reference joints, ball at rest above the tray at ``ball_x`` (m, base frame)."""
+        pybullet.restoreState(self._home, physicsClientId=self.client)
+        pybullet.resetBasePositionAndOrientation(
+            self.ball, [ball_x, BALL_START_Y, BALL_START_Z], [0, 0, 0, 1], physicsClientId=self.client)
+        if self._brakes:
+            self._release_brakes()
+        self._push = None
+        self.effort = self._holding_effort
+
+    def joint_state(self) -> tuple[np.ndarray, np.ndarray]:
+        """Joint positions, rad, and velocities, rad/s, each (7,)."""
+        states = pybullet.getJointStates(self.arm, self._joints, self.client)
+        # Half the time of np.array([state[0] for state in states]).
+        return np.fromiter(map(_POSITION, states), float, DOF), np.fromiter(map(_VELOCITY, states), float, DOF)
+
+    def ball_state(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """The ball in the base frame: position, m; quaternion x y z w; velocity, m/s; angular velocity, rad/s."""
+        position, orientation = pybullet.getBasePositionAndOrientation(self.ball, physicsClientId=self.client)
+        velocity, spin = pybullet.getBaseVelocity(self.ball, physicsClientId=self.client)
+        return position, orientation, velocity, spin
+
+    def push(self, force: np.ndarray) -> None:
+        """From the next tick on push the tray's origin with ``force`` ((3,), N, base axes), until told otherwise."""
+        self._push = force if force.any() else None
+
+    def step(self, torque: np.ndarray) -> None:
+        """One tick with joint torques ``torque`` ((7,), N m), kept within the joints' limits."""
+        if self._brakes:
+            self._release_brakes()
+        self.effort = clamp_torque(torque)
+        pybullet.setJointMotorControlArray(
+            self.arm, self._joints, pybullet.TORQUE_CONTROL, forces=self.effort.tolist(), physicsClientId=self.client)
+        self._advance()
+
+    def step_braked(self) -> None:
+        """One tick without a command: the joints' brakes hold them, as a Panda's do when its control stops."""
+        if not self._brakes:
+            pybullet.setJointMotorControlArray(
+                self.arm, self._joints, pybullet.VELOCITY_CONTROL, targetVelocities=[0.0] * DOF,
+                forces=list(TORQUE_MAX), physicsClientId=self.client)
+            self._brakes = True
+            self.effort = self._holding_effort
+        self._advance()
+
+    def _release_brakes(self) -> None:
+        pybullet.setJointMotorControlArray(
+            self.arm, self._joints, pybullet.VELOCITY_CONTROL, forces=[0.0] * DOF, physicsClientId=self.client)
+        self._brakes = False
+
+    def _advance(self) -> None:
+        if self._push is not None:
+            origin = pybullet.getLinkState(self.arm, self.tray, physicsClientId=self.client)[4]
+            pybullet.applyExternalForce(
+                self.arm, self.tray, self._push, origin, pybullet.WORLD_FRAME, physicsClientId=self.client)
+        pybullet.stepSimulation(self.client)
+
+    def close(self) -> None:
+        """Free the physics server."""
+        pybullet.disconnect(self.client)

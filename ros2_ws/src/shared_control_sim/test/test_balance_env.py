@@ -1,0 +1,77 @@
+"""The Gymnasium environment in this process."""
+
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from shared_control.env import BalanceEnv
+from shared_control.tasks.balance.settings import DEFAULT_TASK, THESIS_TASK
+from shared_control_sim.local_plant import LocalPlant
+from stable_baselines3.common.env_checker import check_env as check_env_for_sb3
+
+
+@pytest.fixture
+def env():
+    env = BalanceEnv(LocalPlant())
+    yield env
+    env.close()
+
+
+def rollout(env, seed, actions):
+    observation, _ = env.reset(seed=seed)
+    rows = [observation]
+    for action in actions:
+        observation, reward, terminated, truncated, _ = env.step(np.array([action], np.float32))
+        rows.append([*observation[:2], reward])
+        if terminated or truncated:
+            break
+    return np.array(rows)
+
+
+@pytest.mark.filterwarnings('ignore:.*render modes.*')
+def test_gymnasium_and_sb3_accept_it(env):
+    check_env(env)
+    check_env_for_sb3(env)
+
+
+def test_same_seed_same_episode(env):
+    actions = np.sin(np.arange(100) / 10)
+    np.testing.assert_array_equal(rollout(env, 5, actions), rollout(env, 5, actions))
+    assert (rollout(env, 5, actions) != rollout(env, 6, actions)).any()
+
+
+def test_episode_ends_after_its_time(env):
+    env.reset(seed=0)
+    for step in range(750):
+        _, _, terminated, truncated, info = env.step(np.array([-0.26]))
+        assert not terminated
+        assert truncated == (step == 749)
+    assert info['m_y_agent'] == pytest.approx(-0.26 * 8.0)
+
+
+def test_a_fall_terminates_and_costs():
+    env = BalanceEnv(LocalPlant(moment_limit=105.0), THESIS_TASK)
+    env.reset(seed=0)
+    for _ in range(750):
+        _, reward, terminated, truncated, info = env.step(np.array([1.0]))
+        if terminated:
+            break
+    assert terminated and not truncated and info['fallen'] and reward == -5000.0
+    env.close()
+
+
+class SteadyHand:
+    """Presses left for good."""
+
+    def reset(self, seed):
+        pass
+
+    def moment(self, state):
+        return 15.0
+
+
+def test_moments_are_told_apart_and_their_sum_is_limited():
+    env = BalanceEnv(LocalPlant(SteadyHand(), moment_limit=DEFAULT_TASK.moment_limit))
+    env.reset(seed=0)
+    info = env.step(np.array([1.0]))[-1]
+    assert (info['m_y_agent'], info['m_y_human'], info['m_y_applied']) == (8.0, 15.0, 20.0)
+    env.close()

@@ -1,0 +1,102 @@
+"""The simulated world: physics of the ball, determinism, disturbances."""
+
+import numpy as np
+import pytest
+from shared_control.control.computed_torque import ComputedTorqueController
+from shared_control.robot.model import GRAVITY, PandaModel, pitch
+from shared_control_sim.bullet import BallOnTrayWorld
+
+
+@pytest.fixture
+def world():
+    world = BallOnTrayWorld()
+    yield world
+    world.close()
+
+
+@pytest.fixture(scope='module')
+def model():
+    return PandaModel()
+
+
+def run(world, model, ball_x, moments):
+    """States of an episode with one moment a tick."""
+    controller = ComputedTorqueController(model)
+    world.reset(ball_x)
+    trace = []
+    for m_y in moments:
+        q, qd = world.joint_state()
+        world.step(controller.torque(q, qd, world.effort, m_y))
+        trace.append([*q, *qd, *world.ball_state()[0], *world.ball_state()[2]])
+    return np.array(trace)
+
+
+def test_ball_rolls_at_five_sevenths_of_g_sin_theta(world, model):
+    """A solid sphere that rolls without slipping: a = 5/7 g sin(theta), on a tray tilted and then held."""
+    controller = ComputedTorqueController(model)
+    world.reset(-0.6)
+    for tick in range(1200):
+        q, qd = world.joint_state()
+        world.step(controller.torque(q, qd, world.effort, 5.0))
+        if tick == 599:
+            start = world.ball_state()[2], pitch(model.tray_pose(world.joint_state()[0])[1])
+    (v0, *_), pitch0 = start
+    v1 = world.ball_state()[2][0]
+    pitch1 = pitch(model.tray_pose(world.joint_state()[0])[1])
+    acceleration = (v1 - v0) / 0.6
+    assert acceleration == pytest.approx(5 / 7 * GRAVITY * np.sin((pitch0 + pitch1) / 2), rel=0.03)
+
+
+def test_left_moment_rolls_the_ball_towards_positive_x(world, model):
+    left = run(world, model, -0.485, [5.0] * 500)
+    right = run(world, model, -0.485, [-8.0] * 500)
+    assert left[-1, 14] > -0.47 and right[-1, 14] < -0.49
+
+
+def test_an_episode_does_not_depend_on_what_came_before(world, model):
+    moments = 6.0 * np.sin(np.arange(1500) / 100)
+    first = run(world, model, -0.5, moments)
+    run(world, model, -0.3, np.full(700, 15.0))
+    world.push(np.array([0.0, 0.0, 50.0]))
+    world.step_braked()
+    again = run(world, model, -0.5, moments)
+    np.testing.assert_array_equal(first, again)
+
+
+def test_two_worlds_agree_bit_for_bit(world, model):
+    other = BallOnTrayWorld()
+    moments = 8.0 * np.cos(np.arange(1000) / 70)
+    np.testing.assert_array_equal(run(world, model, -0.4, moments), run(other, model, -0.4, moments))
+    other.close()
+
+
+def test_walls_keep_a_slow_ball_and_lose_a_fast_one(world, model):
+    slow = run(world, model, -0.3, [5.0] * 2000)
+    assert slow[-1, 16] > 0.9
+    fast = run(world, model, -0.6, [60.0] * 2500)
+    assert fast[:, 16].min() < 0.836
+
+
+def test_brakes_hold_the_arm(world):
+    q, _ = world.joint_state()
+    for _ in range(500):
+        world.step_braked()
+    np.testing.assert_allclose(world.joint_state()[0], q, atol=1e-3)
+
+
+def test_a_push_moves_the_tray_and_ends(world, model):
+    controller = ComputedTorqueController(model)
+    world.reset(-0.485)
+    height = []
+    for tick in range(1000):
+        world.push(np.array([0.0, 0.0, -50.0 if tick < 500 else 0.0]))
+        q, qd = world.joint_state()
+        world.step(controller.torque(q, qd, world.effort, 0.0))
+        height.append(model.tray_pose(q)[0][2])
+    assert height[499] < height[0] - 0.003
+    assert height[-1] > height[499] + 0.001
+
+
+def test_torques_are_kept_within_the_joints_limits(world):
+    world.step(np.full(7, 1e6))
+    np.testing.assert_array_equal(world.effort, [87, 87, 87, 87, 12, 12, 12])

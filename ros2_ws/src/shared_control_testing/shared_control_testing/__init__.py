@@ -1,0 +1,1 @@
+"""Fixtures and made-up recordings for the tests of the other packages."""

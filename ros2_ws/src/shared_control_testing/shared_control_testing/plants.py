@@ -1,0 +1,54 @@
+"""Fixtures: a plant that takes no time, and a policy that balances."""
+
+import numpy as np
+import pytest
+from shared_control.plant import PlantInterrupted, PlantState
+from shared_control.robot.posture import Q_REFERENCE
+from shared_control.tasks.balance.settings import DEFAULT_TASK
+
+__all__ = ['fake_plant', 'good_robot']
+
+
+class FakePlant:
+    """A ball that rolls as the moment says; a person who holds ``m_y_human``. Quick."""
+
+    def __init__(self, m_y_human=0.0, falls_at=None, interrupted_at=None):
+        self.m_y_human, self.falls_at, self.interrupted_at = m_y_human, falls_at, interrupted_at
+
+    def reset(self, seed):
+        self._x = float(np.random.default_rng(seed).uniform(-0.6, -0.3))
+        self._v, self._step = 0.0, 0
+        return self._state()
+
+    def advance(self, m_y_agent):
+        self._step += 1
+        if self._step == self.interrupted_at:
+            self.interrupted_at = None
+            raise PlantInterrupted('gone')
+        self._v = float(np.clip(self._v + 0.02 * 0.05 * (m_y_agent + self.m_y_human), -0.5, 0.5))
+        self._x += 0.02 * self._v
+        return self._state()
+
+    def _state(self):
+        z = 0.0 if self._step == self.falls_at else 0.94
+        return PlantState(Q_REFERENCE, (self._x, 0.0, z), (self._v, 0.0, 0.0), self.m_y_human, self.m_y_human)
+
+    def close(self):
+        pass
+
+
+@pytest.fixture
+def fake_plant():
+    """The class of a plant that takes no time."""
+    return FakePlant
+
+
+@pytest.fixture
+def good_robot():
+    """A policy that tilts the tray as a spring and a damper would."""
+    def act(observation):
+        error, velocity, _ = observation * DEFAULT_TASK.observation_scales
+        m_y = -2.1 + (0.6 * error - 0.45 * velocity) / 0.008
+        return np.clip([m_y / DEFAULT_TASK.action_scale], -1, 1)
+
+    return act
