@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from ppo_agent_node.graph_plant import GraphPlant
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.rates import TICKS_PER_ACTION
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
@@ -33,7 +33,7 @@ def local():
         step(torque)
 
     plant.world.step = recorded_step
-    env = BalanceEnv(plant)
+    env = SharedControlEnv(plant)
     yield env, ticks
     env.close()
 
@@ -47,7 +47,7 @@ def graph(start_node, observer):
     background = Background(observer.node)
     plant = GraphPlant(observer.node, background, observer.take_all)
     plant.wait_until_up()
-    env = BalanceEnv(plant)
+    env = SharedControlEnv(plant)
     yield env, states
     env.close()
     background.close()
@@ -64,7 +64,7 @@ def test_an_episode_on_the_graph_equals_one_in_process(local, graph, observer):
         for action in actions()[:steps]:
             for env, rows in ((local_env, local_rows), (graph_env, graph_rows)):
                 observation, reward, terminated, truncated, info = env.step(np.array([action], np.float32))
-                rows.append([*observation, reward, terminated, truncated, info['m_y_applied'],
+                rows.append([*observation, reward, terminated, truncated, info['applied'][0],
                              *info['reward_terms'].values()])
             if terminated:
                 break

@@ -82,18 +82,18 @@ class GraphPlant:
         self._last_number = 0
         self._simulator.pause(False, self._attend)
         ball = self._next_ball()
-        return self._read(ball, to_ns(ball.header.stamp))
+        return self._read(ball, to_ns(ball.header.stamp), np.zeros(1))
 
-    def advance(self, m_y_agent: float) -> PlantState:
+    def advance(self, agent: np.ndarray) -> PlantState:
         """See :meth:`Plant.advance`."""
-        self._publish(m_y_agent)
+        self._publish(float(agent[0]))
         started_ns = self._stamp_ns
         ball = self._next_ball()
         step_ns = to_ns(ball.header.stamp) - started_ns
         if not 0 < step_ns <= GAP_NS:
             raise PlantInterrupted(f'the stamps on {self._balls.topic_name} jumped by {step_ns * 1e-9:.3f} s')
         self.late_steps += step_ns // PERIOD_NS - 1
-        return self._read(ball, started_ns)
+        return self._read(ball, started_ns, agent)
 
     def rest(self) -> None:
         """Ask for nothing, and stop time."""
@@ -149,13 +149,14 @@ class GraphPlant:
             f'{contract.BASE_FRAME!r}), position {position}, velocity {velocity}', throttle_duration_sec=1.0)
         return False
 
-    def _read(self, ball: Odometry, started_ns: int) -> PlantState:
+    def _read(self, ball: Odometry, started_ns: int, agent: np.ndarray) -> PlantState:
         """The state at the tick of ``ball``, at the end of a period that began at ``started_ns``."""
         self._stamp_ns = to_ns(ball.header.stamp)
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
         return PlantState(
             self._joints_at(self._stamp_ns), (position.x, position.y, position.z),
-            (velocity.x, velocity.y, velocity.z), self._human.at(started_ns), self._applied.at(self._stamp_ns - 1))
+            (velocity.x, velocity.y, velocity.z), np.array([self._human.at(started_ns)]), agent,
+            np.array([self._applied.at(self._stamp_ns - 1)]))
 
     def _joints_at(self, stamp_ns: int) -> np.ndarray:
         """Joint positions at a tick, (7,), rad."""

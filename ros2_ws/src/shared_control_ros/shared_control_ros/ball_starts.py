@@ -3,7 +3,7 @@
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from shared_control.tasks.balance.task import BallStarts
+from shared_control.tasks.task import BallStarts
 
 
 def follow_seed(node: Node, starts: BallStarts) -> None:

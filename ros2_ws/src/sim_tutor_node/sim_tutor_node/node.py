@@ -83,7 +83,7 @@ class SimTutorNode:
             self._complain(self._balls, f'x is {position.x} m, its velocity {velocity.x} m/s')
             return
         picture = self._tutor.look(PlantState(
-            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), 0.0, 0.0))
+            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), *[np.zeros(1)] * 3))
         key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._m_y_human)
         if key is not None:
             self._keys.press(key, self._stamp_ns)

@@ -7,7 +7,7 @@ q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves
 from geometry_msgs.msg import WrenchStamped
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.teaching.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -50,7 +50,7 @@ class TeleopKeyNode:
 
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
-        self._sources = KeySources(KeyMoment(keystroke, self._moment_limit), self._timeout)
+        self._sources = KeySources(KeyMoment(step=keystroke, limit=self._moment_limit), self._timeout)
         self._wrench = WrenchStamped()
         self._wrench.header.frame_id = contract.BASE_FRAME
         self._publisher = node.create_publisher(

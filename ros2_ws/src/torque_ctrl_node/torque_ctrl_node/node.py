@@ -58,7 +58,7 @@ class TorqueCtrlNode:
             node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls ~/enable.')
 
         self._controller = ComputedTorqueController(
-            PandaModel(), GAINS[gains], CONTROL_PERIOD, horizon, robot_compensates_gravity=compensates)
+            PandaModel(), gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon, robot_compensates_gravity=compensates)
         self._reader = JointStateReader()
         self._joint_states = Polled(node, contract.JOINT_STATES, raw=True)
         self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)
@@ -134,12 +134,12 @@ class TorqueCtrlNode:
                 return
         self._human.update(now_ns)
         self._agent.update(now_ns)
-        m_y = sum_moments(self._agent.moment(now_ns), self._human.moment(now_ns), self._moment_limit)
-        self._torque[:] = self._controller.torque(q, qd, effort, m_y)
+        moment = sum_moments(self._agent.moment(now_ns), self._human.moment(now_ns), self._moment_limit)
+        self._torque[:] = self._controller.torque(q, qd, effort, moment)
         self._command_publisher.publish(bytes(self._command))
         self._answered_ns = now_ns
         self._diagnostics.tick()
-        applied = self._applied
+        applied, m_y = self._applied, float(moment[0])
         if m_y != applied.wrench.torque.y or self._ticks % TICKS_PER_POLL == 0:
             set_ns(applied.header.stamp, now_ns)
             applied.wrench.torque.y = m_y

@@ -3,6 +3,7 @@
 import math
 import time
 
+import numpy as np
 from rclpy.node import Node
 from shared_control.control.moments import MomentSource
 from shared_control_ros.contract import BASE_FRAME, Topic
@@ -23,7 +24,7 @@ class WrenchInput:
         self._node = node
         self._input = Polled(node, topic)
         self._timeout = timeout
-        self._source = MomentSource()
+        self._source = MomentSource(1)
         self.topic_name = self._input.topic_name
 
     def update(self, now_ns: int) -> None:
@@ -38,7 +39,7 @@ class WrenchInput:
             self._node.get_logger().error(
                 f'dropped a message on {self.topic_name}: {fault}', throttle_duration_sec=1.0)
             return
-        self._source.m_y = m_y
+        self._source.moment = np.array([m_y])
         self._source.stamp_ns = stamp_ns
 
     def _fault(self, frame: str, m_y: float, age: float) -> str:
@@ -52,8 +53,8 @@ class WrenchInput:
             return f'its stamp is {-age:.3f} s ahead of /joint_states: do both use the same clock (use_sim_time)?'
         return ''
 
-    def moment(self, now_ns: int) -> float:
-        """The moment that counts at ``now_ns``, N m."""
+    def moment(self, now_ns: int) -> np.ndarray:
+        """The moment that counts at ``now_ns``, (1,), N m."""
         return self._source.at(now_ns, self._timeout)
 
     def problem(self, now_ns: int) -> str:

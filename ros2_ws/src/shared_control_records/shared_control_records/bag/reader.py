@@ -9,8 +9,8 @@ import numpy as np
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
 from rosbags.typesys import Stores, get_typestore
+from shared_control.keys import KeyPresses
 from shared_control.robot.limits import DOF, JOINT_NAMES
-from shared_control.teaching.keys import KeyPresses
 
 from .. import topics
 from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout
