@@ -9,7 +9,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from session_recorder_node.recovery import annotate, recover
+from session_recorder_node import annotate, recover
 from shared_control.human.profiles import PROFILES
 from shared_control.learning.presets import PRESETS, preset
 from shared_control.session import in_bag
