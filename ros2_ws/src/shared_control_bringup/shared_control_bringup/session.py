@@ -9,7 +9,7 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from session_recorder_node.recovery import annotate, recover
+from session_recorder_node import annotate, recover
 from shared_control.plugins import LEARNERS, names
 from shared_control.teaching.profiles import PROFILES
 from shared_control_learning.presets import preset

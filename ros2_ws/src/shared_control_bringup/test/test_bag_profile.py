@@ -9,9 +9,9 @@ from mcap.reader import make_reader
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from session_recorder_node.bag_writer import BagWriter
+from session_recorder_node.bag.writer import BagWriter
 from session_recorder_node.node import DEPTH
-from shared_control_ros.contract import PHASE, TOPICS
+from shared_control_ros.contract import TOPICS
 
 PACKAGE = Path(__file__).parents[1]
 NAMES = ['/' + topic.name.removeprefix('/') for topic in TOPICS]
@@ -21,7 +21,8 @@ NAMES = ['/' + topic.name.removeprefix('/') for topic in TOPICS]
 def recorded(tmp_path):
     """A file that the recorder has written."""
     bag = BagWriter(tmp_path / 'bag')
-    bag.write(bag.add_topic('/training/phase', PHASE.msg_type, PHASE.qos), b'\0\1\0\0\1\0\0\0\0', 1, 2, 1)
+    channel = bag.add_topic('/training/phase', 'std_msgs/msg/String', 'string data\n', 'RIHS01_', '[]')
+    bag.write(channel, b'\0\1\0\0\1\0\0\0\0', 1, 2, 1)
     bag.finish()
     return tmp_path / 'bag' / 'bag_0.mcap'
 
