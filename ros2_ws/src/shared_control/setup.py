@@ -14,6 +14,7 @@ setup(
     install_requires=[
         'panda_tray_description', 'numpy', 'pin', 'pybullet', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
         'rosbags', 'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm', 'tensorboard',
+        'pydantic',
     ],
     extras_require={'test': ['pytest'], 'ray': ['ray']},
     zip_safe=False,

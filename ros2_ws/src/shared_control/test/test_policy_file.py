@@ -84,19 +84,40 @@ def change(path, description=lambda d: None, tensors=lambda t: None):
 @pytest.mark.parametrize(('edit', 'reason'), [
     (lambda d: d.update(format='shared-control policy 99'), 'of this version'),
     (lambda d: d['preset'].update(name='magic'), "no preset 'magic'"),
-    (lambda d: d['preset']['ppo'].update(hidden=[100_000]), 'hidden layers'),
+    (lambda d: d['preset']['ppo'].update(hidden=[100_000]), r'preset\.ppo\.hidden\.0: .*less than or equal to 1024'),
+    (lambda d: d['preset']['ppo'].update(hidden=[8] * 5), r'preset\.ppo\.hidden: .*at most 4'),
     (lambda d: d['preset']['ppo'].update(value_hidden=[8, 8]), 'expected torch.float32'),
     (lambda d: d['preset']['ppo'].update(hidden='wide'), 'hidden'),
     (lambda d: d['preset']['task'].update(action_scale=float('nan')), 'action_scale'),
-    (lambda d: d['preset']['task'].pop('action_scale'), 'TaskSettings'),
+    (lambda d: d['preset']['task'].pop('action_scale'), r'preset\.task\.action_scale: is missing'),
+    (lambda d: d['preset']['task'].update(gravity=1.0), r'preset\.task\.gravity: is not known'),
     (lambda d: d.update(episode=-1), 'episode'),
     (lambda d: d.update(seed='x'), 'seed'),
+    (lambda d: d.update(seed=2**32), 'seed'),
+    (lambda d: d.update(author='x'), 'author: is not known'),
     (lambda d: d['action_space'].update(low=[-2.0]), 'action_space'),
     (lambda d: d.pop('preset'), 'preset'),
 ])
 def test_a_wrong_description_is_refused(path, edit, reason):
     change(path, description=edit)
     refused(path, reason)
+
+
+@pytest.mark.parametrize(('part', 'field', 'value'), [
+    ('task', 'observation_scales', [0.1, 0.0, 0.1]), ('task', 'observation_scales', [0.1, 0.1]),
+    ('task', 'weight_pitch', -1.0), ('task', 'fall_reward', float('-inf')), ('task', 'episode_seconds', 0.0),
+    ('task', 'rate_centre', 10.0), ('task', 'moment_limit', '20'),
+    ('ppo', 'batch_size', 1), ('ppo', 'batch_size', True), ('ppo', 'noise_seconds', -0.1), ('ppo', 'epochs', 0),
+    ('ppo', 'epochs', 1001), ('ppo', 'learning_rate', 0.0), ('ppo', 'learning_rate_min', -1.0), ('ppo', 'gamma', 1.1),
+    ('ppo', 'gae_lambda', -0.1), ('ppo', 'clip_range', 0.0), ('ppo', 'initial_std', 0.0), ('ppo', 'std_min', -1.0),
+    ('ppo', 'value_weight', -0.5), ('ppo', 'entropy_weight', float('nan')), ('ppo', 'std_decay', 10**400),
+    ('coaching', 'delays', [-0.1]), ('coaching', 'delays', [5.1]), ('coaching', 'delays', [0.1] * 101),
+    ('coaching', 'delays', []), ('coaching', 'memory_episodes', -1), ('coaching', 'memory_episodes', 1001),
+    ('coaching', 'weight', -1.0), ('coaching', 'fade_episodes', 0), ('coaching', 'gain', None),
+])
+def test_settings_out_of_range_are_refused_by_name(path, part, field, value):
+    change(path, description=lambda d: d['preset'][part].update({field: value}))
+    refused(path, rf'preset\.{part}\.{field}\b')
 
 
 @pytest.mark.parametrize(('edit', 'reason'), [

@@ -7,21 +7,22 @@ Nothing in it is executed when it is read. ``python -c "import safetensors; ..."
 
 import dataclasses
 import json
-import math
 from pathlib import Path
-from typing import Any, TypeVar, get_type_hints
+from typing import Annotated, Any, get_type_hints
 
 import torch
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
 
 from ..files import write_atomically
 from ..task.settings import TaskSettings
+from ..wrong_content import shortened, what_is_wrong
 from .coached_ppo import CoachedPPO
 from .corrections import Corrections
 from .episode_ppo import ACTION_SPACE, OBSERVATION_SPACE, EpisodePPO
 from .learn import make_learner
-from .presets import PRESETS, CoachingSettings, PpoSettings, Preset
+from .presets import CoachingSettings, NotNegative, Positive, PpoSettings, Preset, preset
 
 FORMAT = 'shared-control policy 3'
 SUFFIX = '.safetensors'
@@ -29,16 +30,39 @@ POLICY_NAME = f'policy{SUFFIX}'
 """Of the file in a learner's folder."""
 SIZE_MAX = 16 * 2**20
 """Bytes; a policy of two layers of 32 takes 40 thousand."""
-HIDDEN_MAX = (4, 1024)
-"""Most hidden layers, and most units of one."""
 CORRECTIONS_MAX = 100_000
 """Most remembered corrections; three episodes have 2,250 at most."""
 _KEY = 'policy'
-Settings = TypeVar('Settings')
+_Count = Annotated[int, Field(ge=0, lt=2**63)]
 
 
 class PolicyFileError(ValueError):
     """A policy file is missing or unusable; the message names it and says why."""
+
+
+def _model(**kinds: Any) -> type[BaseModel]:
+    """A model of JSON: all of its fields must be there, no other, and all numbers are finite."""
+    needed: dict[str, Any] = {name: (kind, ...) for name, kind in kinds.items()}
+    config = ConfigDict(strict=True, extra='forbid', allow_inf_nan=False)
+    return create_model('Stored', __config__=config, **needed)
+
+
+def _settings(kind: type, **ranges: Any) -> type[BaseModel]:
+    """A model of the JSON of a dataclass, some of whose fields have ranges of their own here."""
+    return _model(**get_type_hints(kind, include_extras=True) | ranges)
+
+
+_Task = _settings(
+    TaskSettings, episode_seconds=Positive, action_scale=Positive, moment_limit=Positive, reward_scale=Positive,
+    observation_scales=tuple[Positive, Positive, Positive] | None, position_error_max_squared=Positive,
+    weight_pitch=NotNegative, weight_velocity=NotNegative, weight_margin=NotNegative, weight_position=NotNegative,
+    weight_manipulability=NotNegative, rate_centre=Annotated[float, Field(le=0.0)])
+_Preset = _model(
+    name=Annotated[str, Field(max_length=100), AfterValidator(lambda name: preset(name).name)], task=_Task,
+    ppo=_settings(PpoSettings), coaching=_settings(CoachingSettings) | None)
+_Description = _model(
+    format=str, preset=_Preset, seed=Annotated[int, Field(ge=0, lt=2**32)], episode=_Count, steps=_Count,
+    observation_space=dict[str, Any], action_space=dict[str, Any])
 
 
 def save_policy(learner: EpisodePPO, path: Path) -> None:
@@ -61,8 +85,8 @@ def load_policy(path: Path) -> EpisodePPO:
         learner = _learner(description)
         with safe_open(path, framework='pt') as file:
             stored = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - not a mapping
-    except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
-        raise PolicyFileError(f'{path} is no usable policy: {error}') from error
+    except (SafetensorError, OSError, ValueError, RecursionError) as error:
+        raise PolicyFileError(f'{path} is no usable policy: {what_is_wrong(error)}') from error
     expected, remembered = _tensors(learner), _remembered(learner)
     wanted = expected.keys() | remembered.keys()
     if stored.keys() != wanted:
@@ -99,54 +123,26 @@ def read_description(path: Path) -> dict[str, Any]:
         found = description['format']
     except KeyError as error:
         raise PolicyFileError(f'{path} is no policy: its header has no {error}') from error
-    except (SafetensorError, OSError, ValueError, TypeError) as error:
-        raise PolicyFileError(f'{path} is no policy: {error}') from error
+    except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
+        raise PolicyFileError(f'{path} is no policy: {what_is_wrong(error)}') from error
     if found != FORMAT:
-        raise PolicyFileError(f'{path} is no policy of this version: format {found!r}, expected {FORMAT!r}')
+        raise PolicyFileError(f'{path} is no policy of this version: format {shortened(found)}, expected {FORMAT!r}')
     return description
 
 
 def _learner(description: dict[str, Any]) -> EpisodePPO:
-    """A fresh learner as described. Raises KeyError, TypeError or ValueError when the description is wrong."""
+    """A fresh learner as described. Raises ValueError when the description is wrong."""
+    # By way of JSON, in which a list stands for a tuple.
+    found = _Description.model_validate_json(json.dumps(description)).model_dump()
     for name, space in (('observation_space', OBSERVATION_SPACE), ('action_space', ACTION_SPACE)):
-        if description[name] != _describe(space):
-            raise ValueError(f'{name} is {description[name]}, expected {_describe(space)}')
-    stored = description['preset']
-    if stored['name'] not in PRESETS:
-        raise ValueError(f'no preset {stored["name"]!r}; there are {", ".join(PRESETS)}')
-    preset = Preset(
-        stored['name'], _settings(TaskSettings, stored['task']), _settings(PpoSettings, stored['ppo']),
-        None if stored['coaching'] is None else _settings(CoachingSettings, stored['coaching']))
-    for hidden in (preset.ppo.hidden, preset.ppo.value_hidden):
-        if len(hidden) > HIDDEN_MAX[0] or any(not 0 < n <= HIDDEN_MAX[1] for n in hidden):
-            raise ValueError(f'hidden layers {hidden}; at most {HIDDEN_MAX[0]} of {HIDDEN_MAX[1]} units')
-    learner = make_learner(preset, _count(description, 'seed'))
-    learner.episode = _count(description, 'episode')
-    learner.num_timesteps = _count(description, 'steps')
+        if found[name] != _describe(space):
+            raise ValueError(f'{name} is {shortened(found[name])}, expected {_describe(space)}')
+    stored = found['preset']
+    preset = Preset(stored['name'], TaskSettings(**stored['task']), PpoSettings(**stored['ppo']),
+                    None if stored['coaching'] is None else CoachingSettings(**stored['coaching']))
+    learner = make_learner(preset, found['seed'])
+    learner.episode, learner.num_timesteps = found['episode'], found['steps']
     return learner
-
-
-def _settings(kind: type[Settings], stored: dict[str, Any]) -> Settings:
-    """A dataclass of settings from its JSON, checked field by field."""
-    hints = get_type_hints(kind)
-    if stored.keys() != hints.keys():
-        raise ValueError(f'{kind.__name__} should have {", ".join(hints)}')
-    values = {}
-    for name, value in stored.items():
-        if isinstance(value, list):
-            value = tuple(value)
-        numbers = value if isinstance(value, tuple) else (value,)
-        if not all(n is None or (isinstance(n, int | float) and math.isfinite(n)) for n in numbers):
-            raise ValueError(f'{kind.__name__}.{name} is {value!r}, not a finite number')
-        values[name] = value
-    return kind(**values)
-
-
-def _count(description: dict[str, Any], name: str) -> int:
-    value = description[name]
-    if not isinstance(value, int) or not 0 <= value < 2**63:
-        raise ValueError(f'{name} is {value!r}, not a count')
-    return value
 
 
 def _describe(space) -> dict[str, Any]:

@@ -1,40 +1,50 @@
-"""What is learned and how, by name."""
+"""What is learned and how, by name. The ranges of settings are checked where they come from a file."""
 
 from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
 
 from ..task.settings import DEFAULT_TASK, THESIS_TASK, TaskSettings
+
+Positive = Annotated[float, Field(gt=0.0)]
+NotNegative = Annotated[float, Field(ge=0.0)]
+Part = Annotated[float, Field(ge=0.0, le=1.0)]
+Decay = Annotated[float, Field(gt=0.0, le=1.0)]
+Layers = Annotated[tuple[Annotated[int, Field(ge=1, le=1024)], ...], Field(max_length=4)]
+Delays = Annotated[tuple[Annotated[float, Field(ge=0.0, le=5.0)], ...], Field(min_length=1, max_length=100)]
 
 
 @dataclass(frozen=True)
 class PpoSettings:
     """Settings of PPO (Schulman et al., 2017) with one update an episode."""
 
-    hidden: tuple[int, ...] = ()
+    hidden: Layers = ()
     """Units of the policy's hidden layers (tanh). None at all: a linear policy of three weights and a bias."""
-    value_hidden: tuple[int, ...] = (32, 32)
+    value_hidden: Layers = (32, 32)
     """Units of the value function's hidden layers (tanh)."""
-    initial_std: float = 0.6
+    initial_std: Positive = 0.6
     """Of the policy in the first episode, in units of the action."""
-    std_decay: float | None = 0.95
+    std_decay: Decay | None = 0.95
     """What the standard deviation is multiplied by after each episode; None: PPO learns it."""
-    std_min: float = 0.05
+    std_min: Positive = 0.05
     """The least standard deviation that a decay leads to."""
-    noise_seconds: float = 0.0
+    noise_seconds: NotNegative = 0.0
     """Correlation time of the exploring noise, s; 0: white, drawn anew at each step."""
-    learning_rate: float = 1e-2
+    learning_rate: Positive = 1e-2
     """Of Adam, in the first episode."""
-    learning_rate_decay: float = 1.0
+    learning_rate_decay: Decay = 1.0
     """What the learning rate is multiplied by after each episode."""
-    learning_rate_min: float = 1e-3
+    learning_rate_min: Positive = 1e-3
     """The least learning rate that a decay leads to."""
-    epochs: int = 10
-    batch_size: int = 125
-    gamma: float = 0.99
-    gae_lambda: float = 0.95
-    clip_range: float = 0.2
-    entropy_weight: float = 0.0
-    value_weight: float = 0.5
-    max_gradient_norm: float = 0.5
+    epochs: Annotated[int, Field(ge=1, le=1000)] = 10
+    batch_size: Annotated[int, Field(ge=2, le=100_000)] = 125
+    gamma: Part = 0.99
+    gae_lambda: Part = 0.95
+    clip_range: Positive = 0.2
+    entropy_weight: NotNegative = 0.0
+    value_weight: NotNegative = 0.5
+    max_gradient_norm: Positive = 0.5
 
     def std_in(self, episode: int) -> float | None:
         """The policy's standard deviation in ``episode`` (from 1); None when it is learned."""
@@ -50,15 +60,15 @@ class PpoSettings:
 class CoachingSettings:
     """How a correction teaches the policy."""
 
-    gain: float = 2.0
+    gain: NotNegative = 2.0
     """g: how far a correction of a full action's moment moves the label, in units of the action."""
-    delays: tuple[float, ...] = (0.3, 0.4, 0.5, 0.6, 0.7)
+    delays: Delays = (0.3, 0.4, 0.5, 0.6, 0.7)
     """D: how long after the robot's action people may press, s. Each correction counts for all of them."""
-    memory_episodes: int = 3
+    memory_episodes: Annotated[int, Field(ge=0, le=1000)] = 3
     """Corrections of so many episodes are taught, again and again."""
-    weight: float = 1.0
+    weight: NotNegative = 1.0
     """lambda in the first episode."""
-    fade_episodes: int = 8
+    fade_episodes: Annotated[int, Field(ge=1)] = 8
     """The episode from which on lambda is 0; it falls linearly until then."""
 
     def weight_in(self, episode: int) -> float:

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pydantic import ConfigDict, TypeAdapter, with_config
 from stable_baselines3.common.logger import configure
 
 from ..envs.balance_env import BalanceEnv
@@ -14,6 +15,7 @@ from ..files import write_atomically
 from ..human.profiles import TutorProfile
 from ..human.tutor import SimulatedTutor
 from ..seeds import episode_seed
+from ..wrong_content import what_is_wrong
 from .episode_ppo import EpisodePPO
 from .episode_table import TABLE_NAME, EpisodeTable
 from .evaluate import passes, test_settings
@@ -34,6 +36,7 @@ class TrainingError(ValueError):
     """A folder holds no run, or another one than was asked for; the message says which."""
 
 
+@with_config(ConfigDict(extra='forbid'))
 @dataclass
 class TrainingRun:
     """What was taught, by whom, and how well it went."""
@@ -68,6 +71,9 @@ class TrainingRun:
         """Episodes to skilled: those taught when the policy had passed twice in a row; None: not yet."""
         pairs = zip(self.tests, self.tests[1:], strict=False)
         return next((episode for (_, before), (episode, now) in pairs if before and now), None)
+
+
+_TRAINING_RUN = TypeAdapter(TrainingRun)
 
 
 def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, *, until_skilled: bool = True,
@@ -124,11 +130,9 @@ def read_run(folder: Path) -> TrainingRun:
     """
     path = folder / RUN_NAME
     try:
-        stored = json.loads(path.read_text())
-        stored['tests'] = [(int(episode), bool(passed)) for episode, passed in stored['tests']]
-        return TrainingRun(**stored)
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        raise TrainingError(f'{path} is no run: {error}') from error
+        return _TRAINING_RUN.validate_json(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise TrainingError(f'{path} is no run: {what_is_wrong(error)}') from error
 
 
 def _resumed(learner: EpisodePPO, run: TrainingRun, folder: Path) -> tuple[EpisodePPO, TrainingRun]:

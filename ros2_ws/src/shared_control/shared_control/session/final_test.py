@@ -1,13 +1,15 @@
 """The file that keeps the final test of a policy alone (``test.json``)."""
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
 
 from ..envs.plant import POLICY_PERIOD
 from ..files import write_atomically
 from ..learning.evaluate import POSITION_ERROR_MAX, VELOCITY_MAX, Evaluation, TestEpisode, settled
+from ..wrong_content import what_is_wrong
 
 STEPS_PER_SAMPLE = 5
 """A track is kept at 10 Hz."""
@@ -49,6 +51,9 @@ class FinalTest:
         return sum(episode.success for episode in self.episodes)
 
 
+_FINAL_TEST = TypeAdapter(FinalTest)
+
+
 def save_test(evaluation: Evaluation, path: Path) -> FinalTest:
     """Keep an evaluation in ``path``."""
     test = FinalTest(tuple(_tested(episode) for episode in evaluation.episodes))
@@ -66,13 +71,9 @@ def load_test(path: Path) -> FinalTest | None:
     if not path.is_file():
         return None
     try:
-        content = json.loads(path.read_text())
-        episodes = tuple(
-            TestedEpisode(**{**_known(TestedEpisode, episode), 'track': tuple(episode.get('track', ()))})
-            for episode in content['episodes'])
-        return FinalTest(**{**_known(FinalTest, content), 'episodes': episodes})
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f'{path} is no result of a test: {error!r}') from error
+        return _FINAL_TEST.validate_json(path.read_bytes())
+    except ValidationError as error:
+        raise ValueError(f'{path} is no result of a test: {what_is_wrong(error)}') from error
 
 
 def _tested(episode: TestEpisode) -> TestedEpisode:
@@ -80,8 +81,3 @@ def _tested(episode: TestEpisode) -> TestedEpisode:
     return TestedEpisode(
         success=episode.success, kept=not episode.fallen, position_error=settled(episode.position_error),
         velocity=settled(episode.velocity), ball_start=float(episode.position_error[0]), track=track)
-
-
-def _known(kind: type, content: dict[str, Any]) -> dict[str, Any]:
-    """What ``kind`` has a field for."""
-    return {field.name: content[field.name] for field in fields(kind) if field.name in content}
