@@ -135,6 +135,7 @@ def _resumed(learner: EpisodePPO, run: TrainingRun, folder: Path) -> tuple[Episo
     """The learner and the run in ``folder``, or those given when there are none yet."""
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / POLICY_NAME).exists():
+        _write_run(run, folder)  # from now on the folder is known as a run's, however early this one is killed
         return learner, run
     stored = read_run(folder)
     for name in ('preset', 'tutor', 'seed', 'human_only'):
@@ -147,6 +148,10 @@ def _resumed(learner: EpisodePPO, run: TrainingRun, folder: Path) -> tuple[Episo
     stored.returns = stored.returns[:learner.episode]
     stored.intervention_rates = stored.intervention_rates[:learner.episode]
     return learner, stored
+
+
+def _write_run(run: TrainingRun, folder: Path) -> None:
+    write_atomically(folder / RUN_NAME, (json.dumps(asdict(run), indent=2) + '\n').encode())
 
 
 class _Keeper(Hooks):
@@ -186,7 +191,7 @@ class _Keeper(Hooks):
 
     def _keep(self, record: EpisodeRecord, folder: Path) -> None:
         self._table.append(record)
-        write_atomically(folder / RUN_NAME, (json.dumps(asdict(self._run), indent=2) + '\n').encode())
+        _write_run(self._run, folder)
         save_policy(self._learner, folder / POLICY_NAME)
         logger = self._learner.logger
         for name, value in record.row().items():
