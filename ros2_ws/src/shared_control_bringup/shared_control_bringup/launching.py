@@ -31,7 +31,7 @@ SHARE = FindPackageShare('shared_control_bringup')
 def common_arguments() -> list[DeclareLaunchArgument]:
     """Arguments of every launch file that starts nodes of the graph."""
     return [
-        DeclareLaunchArgument('params_file', default_value=str(DEFAULTS), description='ROS parameters of all nodes.'),
+        DeclareLaunchArgument('params_file', default_value=str(DEFAULTS), description='ROS parameters, laid over the defaults.'),
         DeclareLaunchArgument('namespace', default_value='', description='Of all nodes and topics but /clock and /tf.'),
     ]
 
@@ -51,9 +51,9 @@ def environment() -> list[SetEnvironmentVariable]:
 def graph_node(package: SomeSubstitutionsType, *, parameters: dict[str, Any] | None = None, **options: Any) -> Node:
     """A node of the graph: package and executable of one name, the parameter file, started again when it dies.
 
-    ``parameters`` come before those of the file; ``options`` go to ``launch_ros.actions.Node``.
+    The file is laid over the defaults, and ``parameters`` over the file; ``options`` go to ``launch_ros.actions.Node``.
     """
-    files: list[Any] = [LaunchConfiguration('params_file')]
+    files: list[Any] = [str(DEFAULTS), LaunchConfiguration('params_file')]
     return Node(
         package=package, executable=package, parameters=files + ([parameters] if parameters else []),
         respawn=True, respawn_delay=RESPAWN_DELAY, **options)
