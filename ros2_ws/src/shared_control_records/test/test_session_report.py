@@ -161,6 +161,15 @@ def annotated(bag, path, content):
         writer.finish()
 
 
+@pytest.mark.usefixtures('no_picture')
+def test_a_simulated_tutor_of_an_earlier_part_is_not_forgotten(folder):
+    folder.write_settings({'preset': 'coached', 'tutor': 'keyboard', 'earlier_tutors': ['simulated: low']})
+    summary = write_report(folder)
+    assert summary.simulated_tutor is True
+    assert summary.tutor == 'keyboard, before that simulated: low'
+    assert 'The tutor was simulated' in folder.report.read_text()
+
+
 def test_the_bag_alone_gives_the_same_report(folder, tmp_path):
     original = write_report(folder, restarts=1)
     annotated(next(folder.bag.glob('*.mcap')), tmp_path / 'session.mcap', in_bag.pack(folder, restarts=1))
