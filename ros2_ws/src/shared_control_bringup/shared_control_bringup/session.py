@@ -69,8 +69,11 @@ def _new_settings(args: argparse.Namespace) -> Settings:
 def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settings:
     """The settings of an earlier session, with what the options change in them."""
     refuse_options_of_new_sessions(args)
+    content = folder.read_json(folder.settings)
+    if content is None:
+        raise ValueError(f'{folder.settings} is missing: it is not known how to go on')
     try:
-        settings = Settings.from_json(folder.read_json(folder.settings) or {})
+        settings = Settings.from_json(content)
     except ValueError as error:
         raise ValueError(f'cannot use {folder.settings}: {error}') from error
     return settings.resumed_with(given_settings(args))

@@ -137,6 +137,24 @@ def test_what_cannot_change_when_a_session_goes_on_is_refused(session, tmp_path,
     assert content(folder) == before
 
 
+@pytest.mark.parametrize(('name', 'text', 'said'), [
+    ('settings.json', None, 'settings.json is missing'),
+    ('settings.json', '{"episodes": "many"}', 'settings.json: a value has the wrong type'),
+    ('given_parameters.yaml', None, 'given_parameters.yaml')])
+def test_a_session_whose_files_are_damaged_does_not_go_on(session, tmp_path, capsys, name, text, said):
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'sim', '--output', folder) == 0
+    (folder / 'bag').mkdir()
+    if text is None:
+        (folder / name).unlink()
+    else:
+        (folder / name).write_text(text)
+    before = content(folder)
+    assert session('--resume', folder) == 2
+    assert said in capsys.readouterr().err
+    assert content(folder) == before
+
+
 def test_the_session_chooses_the_port_of_its_page_and_keeps_the_token_to_itself(session, tmp_path):
     folder = SessionFolder(tmp_path / 'session')
     assert session('--tutor', 'page', '--page', '127.0.0.1:0', '--output', folder.path) == 0
