@@ -1,12 +1,11 @@
 """Markers of tray, ball and moments, all in the base frame: they need no transforms."""
 
-import xml.etree.ElementTree as ET
-from pathlib import Path
+from collections.abc import Sequence
 
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
-from panda_tray_description import URDF_PATH
-from shared_control.robot.model import TRAY_FRAME, quaternion_of
+from shared_control.robot.model import quaternion_of
+from shared_control.scene import Box
 from shared_control_ros.contract import BASE_FRAME
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker
@@ -24,22 +23,14 @@ BAR_HEIGHTS = {'human': 0.30, 'agent': 0.25, 'applied': 0.20}
 """Of the bars above the tray's centre, m."""
 
 
-def tray_boxes(urdf: Path = URDF_PATH) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Centre and size, each (3,), m, of the boxes that make up the tray, in its frame."""
-    tray = next(link for link in ET.parse(urdf).getroot().iter('link') if link.get('name') == TRAY_FRAME)
-    return [(_numbers(visual.find('origin'), 'xyz'), _numbers(visual.find('geometry/box'), 'size'))
-            for visual in tray.iter('visual')]
-
-
-def tray_markers(position: np.ndarray, rotation: np.ndarray,
-                 boxes: list[tuple[np.ndarray, np.ndarray]]) -> list[Marker]:
+def tray_markers(position: np.ndarray, rotation: np.ndarray, boxes: Sequence[Box]) -> list[Marker]:
     """The tray at ``position`` (3,), m, turned by ``rotation`` (3, 3)."""
     turn = Quaternion(**dict(zip('xyzw', quaternion_of(rotation).tolist(), strict=True)))
     markers = []
-    for number, (centre, size) in enumerate(boxes):
+    for number, box in enumerate(boxes):
         marker = _marker('tray', number, Marker.CUBE, TRAY_COLOUR)
-        marker.pose = Pose(position=_point(position + rotation @ centre), orientation=turn)
-        marker.scale = Vector3(**dict(zip('xyz', size.tolist(), strict=True)))
+        marker.pose = Pose(position=_point(position + rotation @ box.centre), orientation=turn)
+        marker.scale = Vector3(**dict(zip('xyz', box.size, strict=True)))
         markers.append(marker)
     return markers
 
@@ -79,7 +70,3 @@ def _point(position: np.ndarray) -> Point:
     x, y, z = position.tolist()
     return Point(x=x, y=y, z=z)
 
-
-def _numbers(element: ET.Element | None, attribute: str) -> np.ndarray:
-    assert element is not None, 'the tray is made of boxes, each with an origin'
-    return np.array(element.get(attribute, '').split(), float)

@@ -16,6 +16,7 @@ from shared_control.control.moments import MomentSource
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import PandaModel
 from shared_control.scene import Ball
+from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -26,7 +27,7 @@ from shared_control_ros.stamps import to_ns
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
-from .markers import ball_marker, moment_markers, tray_boxes, tray_markers
+from .markers import ball_marker, moment_markers, tray_markers
 from .transforms import arm_transforms, ball_transform
 
 try:
@@ -53,7 +54,7 @@ class RobotViewNode:
             node, 'ball_radius', Ball.radius, 'Radius of the ball, as in panda_sim_node.', unit='m',
             minimum=0.005, maximum=0.05)
         self._model = PandaModel()
-        self._boxes = tray_boxes()
+        self._boxes = BALANCE.scene.boxes
         self._balls = Polled(node, contract.BALL)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
         self._wrenches = {source: (Polled(node, topic), MomentSource(1)) for source, topic in WRENCHES.items()}

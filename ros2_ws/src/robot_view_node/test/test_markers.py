@@ -2,23 +2,23 @@
 
 import numpy as np
 import pytest
-from robot_view_node.markers import METRES_PER_NEWTON_METRE, ball_marker, moment_markers, tray_boxes, tray_markers
+from robot_view_node.markers import METRES_PER_NEWTON_METRE, ball_marker, moment_markers, tray_markers
+from shared_control.tasks.balance import BALANCE
 from visualization_msgs.msg import Marker
 
 TRAY = np.array([-0.485, 0.0, 0.908])
 
 
-def test_the_tray_is_drawn_as_the_boxes_of_the_urdf():
-    boxes = tray_boxes()
+def test_the_tray_is_drawn_as_the_boxes_of_the_task():
+    boxes = BALANCE.scene.boxes
     assert len(boxes) == 5  # a plate and four walls
-    np.testing.assert_allclose(boxes[0][1], [0.41, 0.11, 0.006])
     quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    for marker, (centre, size) in zip(tray_markers(TRAY, quarter, boxes), boxes, strict=True):
-        position = marker.pose.position
+    for marker, box in zip(tray_markers(TRAY, quarter, boxes), boxes, strict=True):
+        position, centre = marker.pose.position, box.centre
         np.testing.assert_allclose(
             [position.x, position.y, position.z], TRAY + [-centre[1], centre[0], centre[2]], atol=1e-12)
         assert marker.pose.orientation.z == pytest.approx(np.sqrt(0.5))
-        assert (marker.scale.x, marker.scale.y, marker.scale.z) == tuple(size)
+        assert (marker.scale.x, marker.scale.y, marker.scale.z) == box.size
 
 
 def test_the_ball_has_its_diameter():
@@ -34,7 +34,7 @@ def test_a_moment_points_to_where_the_ball_rolls(m_y):
 
 
 def test_a_viewer_can_tell_all_markers_apart():
-    markers = [*tray_markers(TRAY, np.eye(3), tray_boxes()), ball_marker(TRAY, 0.015)]
+    markers = [*tray_markers(TRAY, np.eye(3), BALANCE.scene.boxes), ball_marker(TRAY, 0.015)]
     for source in ('human', 'agent', 'applied'):
         markers += moment_markers(source, 1.0, TRAY)
     assert len({(marker.ns, marker.id) for marker in markers}) == len(markers)

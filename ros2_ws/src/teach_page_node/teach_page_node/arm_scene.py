@@ -1,32 +1,28 @@
 """The arm, the tray and the ball as a three.js scene that NiceGUI sets up; the browser moves what has a name."""
 
-from xml.etree import ElementTree
-
 import numpy as np
 import pinocchio as pin
 from nicegui import ui
-from panda_tray_description import URDF_PATH
 from shared_control.robot.limits import DOF
 from shared_control.robot.model import TRAY_FRAME, PandaModel
+from shared_control.scene import Scene
 
-BALL_RADIUS = 0.015
-"""m"""
 _TRAY_COLOUR, _BALL_COLOUR, _GOAL_COLOUR, _FLOOR_COLOUR = '#3d5068', '#f2b705', '#35b37e', '#cfd8e0'
-_GOAL = 0.02
-"""A ball that stays within this of the middle is balanced, m."""
+_FLAT = 0.0004
+"""Height of what is painted on the tray, m."""
 _EVERY_FRAME = 1000
 """NiceGUI's scene waits 1 / fps between two frames of the browser: too long a wait leaves out every other one."""
 _CAMERA = {'x': -0.43, 'y': 0.82, 'z': 1.14, 'look_at_x': -0.43, 'look_at_y': 0.0, 'look_at_z': 0.76}
 """From base +y: base +x, where the left key rolls the ball, is on the left."""
 
 
-def build_scene() -> ui.scene:
+def build_scene(tray: Scene) -> ui.scene:
     """A scene with named groups ``joint1..7``, ``ball`` (base frame) and ``shadow`` (tray frame)."""
     model = PandaModel().pin_model
     with ui.scene(grid=False, background_color='#eaf0f5', fps=_EVERY_FRAME, click_events=[],
                   camera=ui.scene.perspective_camera(fov=40)) as scene:
         scene.box(3.0, 3.0, 0.02).move(-0.2, 0.0, -0.01).material(_FLOOR_COLOUR)
-        scene.sphere(BALL_RADIUS, 24, 16).material(_BALL_COLOUR).with_name('ball')
+        scene.sphere(tray.ball.radius, 24, 16).material(_BALL_COLOUR).with_name('ball')
         _link(scene, 0)
         with _Nested() as nested:
             for joint in range(1, DOF + 1):
@@ -34,7 +30,7 @@ def build_scene() -> ui.scene:
                 nested.enter(scene.group().with_name(f'joint{joint}'))
                 _link(scene, joint)
             nested.enter(_placed(scene, model.frames[model.getFrameId(TRAY_FRAME)].placement))
-            _tray(scene)
+            _tray(scene, tray)
     scene.move_camera(**_CAMERA, duration=0.0)
     return scene
 
@@ -64,19 +60,11 @@ def _link(scene: ui.scene, number: int) -> None:
     scene.gltf(f'/static/meshes/link{number}.glb')
 
 
-def _tray(scene: ui.scene) -> None:
-    """The boxes of the description, the goal in the middle, and the ball's shadow."""
-    tray = ElementTree.parse(URDF_PATH).find(f"link[@name='{TRAY_FRAME}']")
-    assert tray is not None
-    for visual in tray.findall('visual'):
-        width, height, depth = _numbers(visual, 'geometry/box', 'size')
-        scene.box(width, height, depth).move(*_numbers(visual, 'origin', 'xyz')).material(_TRAY_COLOUR)
-    scene.box(2 * _GOAL, 0.098, 0.0006).move(0.0, 0.0, 0.0064).material(_GOAL_COLOUR)
-    flat = scene.cylinder(BALL_RADIUS, BALL_RADIUS, 0.0004, 24).rotate(np.pi / 2, 0.0, 0.0)
+def _tray(scene: ui.scene, tray: Scene) -> None:
+    """The boxes of the task, the goal in the middle, and the ball's shadow."""
+    for box in tray.boxes:
+        scene.box(*box.size).move(*box.centre).material(_TRAY_COLOUR)
+    goal = scene.box(2 * tray.goal_radius, 1.96 * tray.half_width, _FLAT)
+    goal.move(0.0, 0.0, tray.surface + _FLAT).material(_GOAL_COLOUR)
+    flat = scene.cylinder(tray.ball.radius, tray.ball.radius, _FLAT, 24).rotate(np.pi / 2, 0.0, 0.0)
     flat.material('#000000', 0.45).with_name('shadow')
-
-
-def _numbers(element: ElementTree.Element, path: str, attribute: str) -> list[float]:
-    found = element.find(path)
-    assert found is not None
-    return [float(number) for number in found.attrib[attribute].split()]

@@ -1,41 +1,56 @@
 """What stands where on the page. What moves is moved by ``static/page.js``, which finds it by ``data-part``."""
 
+import json
 from typing import Any
 
 from nicegui import ui
+from shared_control.scene import Scene
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 
 from .arm_scene import build_scene
 
+CHART_SECONDS = 15
+"""How far back the chart of the moments reaches, s."""
 _KEYS = (('left', '←', 'tip left'), ('space', '␣', 'let go'), ('right', '→', 'tip right'))
 _MOMENTS = (('human', 'you'), ('agent', 'robot'), ('applied', 'together'))
 
 
-def build(is_replay: bool) -> None:
-    """One page."""
+def build(is_replay: bool, task: Task = BALANCE) -> None:
+    """One page, for ``task``."""
     ui.add_head_html('<link rel="stylesheet" href="/static/page.css">'
                      '<script type="module" src="/static/no_graphics_card.js"></script>')
     ui.query('body').classes('replay' if is_replay else 'live')
     with ui.element('main'):
         _header()
         with ui.element('section').classes('stage'):
-            scene = build_scene().classes('scene').props('data-part=scene')
+            scene = build_scene(task.scene).classes('scene').props('data-part=scene')
             with ui.element('div').classes('close-view'):
                 _moments()
-                ui.html(_CLOSE_VIEW, sanitize=False).classes('drawing')
+                ui.html(_close_view(task.scene), sanitize=False).classes('drawing')
             if is_replay:
                 _player()
             else:
                 _keys()
         with ui.element('aside'):
             _help(is_replay)
-            charts = {'moments': _chart('Moments, N m', _moment_options()),
+            charts = {'moments': _chart('Moments, N m', _moment_options(task)),
                       'returns': _chart('Return of each episode', _episode_options('#4263eb')),
                       'shares': _chart('Human share of each episode, %', _episode_options('#e8590c', 100))}
             if not is_replay:
                 _buttons()
     _part('focus', 'button').classes('veil')
-    ids = {'scene': scene.id, **{name: chart.id for name, chart in charts.items()}}
-    ui.add_body_html(f'<script>window.teachPage = {ids}</script><script type="module" src="/static/page.js"></script>')
+    words = {**_numbers(task), 'scene': scene.id, **{name: chart.id for name, chart in charts.items()}}
+    ui.add_body_html(f'<script>window.teachPage = {json.dumps(words)}</script>'
+                     '<script type="module" src="/static/page.js"></script>')
+
+
+def _numbers(task: Task) -> dict[str, Any]:
+    """What the page's scripts take from the task: lengths, m; durations, s; moments, N m."""
+    tray = task.scene
+    return {'half_length': tray.half_length, 'half_width': tray.half_width, 'surface': tray.surface,
+            'moment_limit': float(task.limit.max()), 'chart_seconds': CHART_SECONDS,
+            'episode_seconds': {'teach': task.episode_seconds, 'test': task.test_seconds}}
 
 
 def _part(name: str, tag: str = 'div') -> ui.element:
@@ -119,11 +134,13 @@ def _axes() -> dict[str, Any]:
             'tooltip': {'trigger': 'axis', 'confine': True}}
 
 
-def _moment_options() -> dict[str, Any]:
+def _moment_options(task: Task) -> dict[str, Any]:
+    bound = float(task.limit.max())
     series = [('human', '#e8590c', 2), ('robot', '#4263eb', 1), ('together', '#868e96', 1)]
     return {**_axes(),
-            'xAxis': {'type': 'value', 'min': -15, 'max': 0, 'interval': 5, 'axisLabel': {'formatter': '{value} s'}},
-            'yAxis': {'type': 'value', 'min': -20, 'max': 20, 'interval': 10},
+            'xAxis': {'type': 'value', 'min': -CHART_SECONDS, 'max': 0, 'interval': 5,
+                      'axisLabel': {'formatter': '{value} s'}},
+            'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound / 2},
             'series': [{'name': name, 'type': 'line', 'step': 'end', 'symbol': 'none', 'data': [],
                         'lineStyle': {'color': colour, 'width': width}, 'itemStyle': {'color': colour}}
                        for name, colour, width in series]}
@@ -147,18 +164,24 @@ _REPLAY_HELP = (
     '<kbd>←</kbd> and <kbd>→</kbd> go back and on by 5 s.',
     'The orange arrow is what the teacher did, the blue one what the robot did.')
 
-_CLOSE_VIEW = """
-<svg viewBox="-240 -60 480 168" data-part="close-view" role="img" aria-label="The tray from the front">
-  <line x1="-238" x2="238" y1="0" y2="0" class="level"/>
+
+def _close_view(tray: Scene) -> str:
+    """The tray from the front, 1 mm a unit; base +x is on the left."""
+    half, wall, goal, radius = (1000 * length for length in (
+        tray.half_length, tray.wall, tray.goal_radius, tray.ball.radius))
+    return f"""
+<svg viewBox="{-half - 40} -60 {2 * half + 80} 168" data-part="close-view" role="img"
+    aria-label="The tray from the front">
+  <line x1="{-half - 38}" x2="{half + 38}" y1="0" y2="0" class="level"/>
   <g data-part="tilt">
-    <rect x="-205" y="0" width="410" height="8" rx="2" class="tray"/>
-    <rect x="-205" y="-12" width="6" height="14" class="tray"/>
-    <rect x="199" y="-12" width="6" height="14" class="tray"/>
-    <rect x="-20" y="0" width="40" height="8" class="goal"/>
-    <ellipse data-part="close-shadow" cy="0.5" rx="14" ry="3" class="shadow"/>
-    <circle data-part="close-ball" r="15" class="ball"/>
+    <rect x="{-half - 5}" y="0" width="{2 * half + 10}" height="8" rx="2" class="tray"/>
+    <rect x="{-half - 5}" y="{-wall - 2}" width="6" height="{wall + 4}" class="tray"/>
+    <rect x="{half - 1}" y="{-wall - 2}" width="6" height="{wall + 4}" class="tray"/>
+    <rect x="{-goal}" y="0" width="{2 * goal}" height="8" class="goal"/>
+    <ellipse data-part="close-shadow" cy="0.5" rx="{radius - 1}" ry="3" class="shadow"/>
+    <circle data-part="close-ball" r="{radius}" class="ball"/>
   </g>
-  <text x="-238" y="-46" data-part="tilt-text" class="tilt-text"></text>
+  <text x="{-half - 38}" y="-46" data-part="tilt-text" class="tilt-text"></text>
   <g class="arrows">
     <line x1="0" x2="0" y1="46" y2="98" class="level"/>
     <path data-part="arrow-human" transform="translate(0 55)" class="human"/>

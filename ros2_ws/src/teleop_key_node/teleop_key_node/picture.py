@@ -7,14 +7,6 @@ from shared_control_ros.watching.scene import Scene
 
 from .canvas import to_lines
 
-TRAY_HALF_LENGTH = 0.20
-"""m"""
-TRAY_SURFACE = 0.006
-"""Above the tray's frame, m."""
-WALL_HEIGHT = 0.010
-"""Above the surface, m."""
-BALL_RADIUS = 0.015
-"""m"""
 STEEPER = 3
 """How many times steeper the tilt is drawn."""
 
@@ -24,7 +16,7 @@ _MAX_COLUMNS, _MAX_ROWS = 120, 30
 def has_fallen(scene: Scene) -> bool:
     """Whether the ball is no longer on the tray."""
     return (scene.ball_along is not None and scene.ball_height is not None
-            and (scene.ball_height < 0.0 or abs(scene.ball_along) > TRAY_HALF_LENGTH + BALL_RADIUS))
+            and (scene.ball_height < 0.0 or abs(scene.ball_along) > scene.tray.half_length + scene.tray.ball.radius))
 
 
 def draw(scene: Scene, width: int, height: int, unicode: bool) -> list[str]:
@@ -37,8 +29,9 @@ def draw(scene: Scene, width: int, height: int, unicode: bool) -> list[str]:
 
 def _dots(scene: Scene, pitch: float, width: int, height: int) -> np.ndarray:
     """The dots that are set, (height, width). Lengths are in dots, as wide as they are high in most fonts."""
-    scale = 0.44 * width / TRAY_HALF_LENGTH
-    half, radius = TRAY_HALF_LENGTH * scale, BALL_RADIUS * scale
+    tray = scene.tray
+    scale = 0.44 * width / tray.half_length
+    half, radius = tray.half_length * scale, tray.ball.radius * scale
     middle_x, middle_y = width / 2 - 0.5, math.floor(0.58 * height)
     # The raised end, with the ball on it, stays in the picture.
     steepest = math.asin(min(max((middle_y - 2 * radius) / half, 0.05), 0.7))
@@ -52,11 +45,11 @@ def _dots(scene: Scene, pitch: float, width: int, height: int) -> np.ndarray:
 
     reach = np.abs(along)
     dots = (above <= 0.5) & (above > -1.5) & (reach <= half)
-    dots |= (reach <= half) & (reach > half - 2.0) & (above > -1.0) & (above <= WALL_HEIGHT * scale)
+    dots |= (reach <= half) & (reach > half - 2.0) & (above > -1.0) & (above <= tray.wall * scale)
     # The tray turns about its middle, where the ball should be.
     dots |= (up < -3.0) & (up >= -9.0) & (np.abs(left) <= -3.0 - up)
     if scene.ball_along is not None and scene.ball_height is not None:
-        ball_along, ball_above = scene.ball_along * scale, (scene.ball_height - TRAY_SURFACE) * scale
+        ball_along, ball_above = scene.ball_along * scale, (scene.ball_height - tray.surface) * scale
         ball_left, ball_up = ball_along * cos + ball_above * sin, ball_above * cos - ball_along * sin
         ball_up = max(ball_up, middle_y - height + radius)  # a fallen ball lies at the bottom of the picture
         dots |= (left - ball_left) ** 2 + (up - ball_up) ** 2 <= radius ** 2

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from shared_control.tasks.balance import BALANCE
 from shared_control_learning.evaluation.result import ProtocolResult
 
 from ..study.folder import StudyFolder
@@ -11,7 +12,7 @@ from ..study.plan import Plan, load_plan
 from ..study.result import ResultError, RunResult, load_result
 from .statistics import Times
 
-TRAY_END = 0.2
+TRAY_END = BALANCE.scene.half_length
 """m: what the position error counts as once the ball has fallen; the tray ends there."""
 BEST = 5
 """Runs of a condition that the thesis compares (4.1)."""

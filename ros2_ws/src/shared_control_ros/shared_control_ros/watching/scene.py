@@ -3,12 +3,16 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from shared_control.scene import Scene as TaskScene
+from shared_control.tasks.balance import BALANCE
 
 
 @dataclass
 class Scene:
     """One moment of the lesson; None is what nobody has said (yet)."""
 
+    tray: TaskScene = BALANCE.scene
+    """The geometry of the task."""
     pitch: float | None = None
     """Of the tray, rad; positive: the left of the picture (base +x) is down."""
     q: np.ndarray | None = None

@@ -1,6 +1,5 @@
 // Three charts: the moments of the last seconds, and what each episode came to.
 
-const SECONDS = 15;
 const SAMPLE_EVERY = 0.05;
 const DRAW_EVERY_MS = 200;
 
@@ -12,10 +11,10 @@ let history = null;
 
 export function showMoments(picture) {
   const last = samples.length ? samples[samples.length - 1][0] : -Infinity;
-  if (picture.time < last || picture.time > last + SECONDS) samples = []; // another run, or another place in a replay
+  if (picture.time < last || picture.time > last + window.teachPage.chart_seconds) samples = []; // another run, or another place in a replay
   if (picture.time > last + SAMPLE_EVERY || !samples.length) {
     samples.push([picture.time, picture.human, picture.agent, picture.applied]);
-    while (samples[0][0] < picture.time - SECONDS) samples.shift();
+    while (samples[0][0] < picture.time - window.teachPage.chart_seconds) samples.shift();
   }
   const now = performance.now();
   if (now - drawnAt < DRAW_EVERY_MS) return;

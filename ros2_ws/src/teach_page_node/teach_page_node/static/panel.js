@@ -11,7 +11,6 @@ const PHASES = {
   done: ["Finished", "The lesson is over. The report is where the session was started."],
 };
 const NOBODY = ["No lesson", "Nobody learns at the moment; your keys move the tray."];
-const EPISODE_SECONDS = { teach: 15, test: 10 };
 
 let phase = null;
 let role = { teaches: false, seat_is_free: false };
@@ -27,7 +26,7 @@ export function showPicture(picture, isReplay) {
 
   const left = isEpisode && picture.time_left !== null ? Math.max(picture.time_left, 0) : null;
   setText("time-left", left === null ? "" : `${left.toFixed(0)} s left`);
-  part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / EPISODE_SECONDS[phase])}%`;
+  part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / window.teachPage.episode_seconds[phase])}%`;
   setText("success", picture.success === null ? "not yet" : `${Math.round(100 * picture.success)} % kept in the middle`);
   setText("human-name", picture.hand === "tutor" ? "simulated tutor" : role.teaches && !isReplay ? "you" : "human");
   for (const name of ["human", "agent", "applied"]) setText(`${name}-moment`, moment(picture[name]));

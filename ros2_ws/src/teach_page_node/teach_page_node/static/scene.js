@@ -1,7 +1,6 @@
 // Moves the arm, the ball and its shadow in NiceGUI's three.js scene.
 
-const SURFACE = 0.0069; // of the tray and its goal, in the tray's frame, m
-const ON_TRAY = [0.2, 0.05]; // half its length and width, m
+const ABOVE_SURFACE = 0.0009; // the shadow lies on the goal, which lies on the tray, m
 
 const FEWEST_A_SECOND = 30;
 const COARSEST = 0.4;
@@ -37,7 +36,8 @@ export function showScene(picture) {
   picture.q?.forEach((angle, i) => (meshes[`joint${i + 1}`].rotation.z = angle));
   meshes.ball.visible = picture.ball !== null;
   if (picture.ball) meshes.ball.position.set(...picture.ball);
+  const tray = window.teachPage;
   const [along, across, above] = picture.on_tray ?? [1, 1, -1];
-  meshes.shadow.visible = above > 0 && Math.abs(along) < ON_TRAY[0] && Math.abs(across) < ON_TRAY[1];
-  meshes.shadow.position.set(along, across, SURFACE);
+  meshes.shadow.visible = above > 0 && Math.abs(along) < tray.half_length && Math.abs(across) < tray.half_width;
+  meshes.shadow.position.set(along, across, tray.surface + ABOVE_SURFACE);
 }
