@@ -22,8 +22,6 @@ POLL_PERIOD = 0.02
 """s. Taking what has come every 20 ms costs a fraction of waking up for every message."""
 SERVICE_POLLS = 5
 """Services (parameters) are looked after every so many polls: that costs as much as a poll."""
-DEPTH = 2000
-"""Messages that may wait for each topic: two seconds of a 1 kHz topic."""
 
 
 class RecordedTopic:
@@ -78,12 +76,12 @@ class SessionRecorder:
             self.node, 'flush_period', 0.25, 'At most this much is lost when the recorder is killed.',
             unit='s', minimum=0.05, maximum=0.5)
         # Messages wait here while the bag is opened, which takes a while after a long recording was killed.
-        subscriptions = [self._subscribe(topic) for topic in contract.TOPICS]
+        subscriptions = [self._subscribe(topic) for topic in contract.BAG_TOPICS]
         self._bag = BagWriter(output)
         for recovered in self._bag.recovered:
             self.node.get_logger().warning(f'finished what a killed recorder left behind: {recovered}')
         self._topics = [RecordedTopic(self.node, topic, subscription, self._bag)
-                        for topic, subscription in zip(contract.TOPICS, subscriptions, strict=True)]
+                        for topic, subscription in zip(contract.BAG_TOPICS, subscriptions, strict=True)]
         latched = {topic.name: topic for topic in self._topics if topic.latched}
         for name, sent in last_sent(self._bag.previous_files, latched).items():
             latched[name].recorded_until = sent
@@ -120,7 +118,7 @@ class SessionRecorder:
 
     def _subscribe(self, topic: Topic) -> Polled:
         return Polled(self.node, topic, raw=True, qos_profile=QoSProfile(
-            depth=DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
+            depth=contract.RECORDER_DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
 
     def _drain(self) -> None:
         for topic in self._topics:

@@ -7,6 +7,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from shared_control import contract
 from shared_control.cli import main
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_records.bag.reader import read_bag
@@ -46,7 +47,7 @@ def test_a_frame_a_policy_step_with_who_did_what(frames, lessons):
 
 def test_a_source_that_falls_silent_counts_no_longer(lessons, tmp_path):
     recording = made.record(lessons[:1])
-    recording.drop(made.topics.HUMAN_WRENCH, 11, 40)
+    recording.drop(contract.HUMAN_WRENCH, 11, 40)
     human = episode_frames(read_bag(recording.write(tmp_path / 'bag')))[0].m_y_human
     assert abs(human[10]) == abs(human[14]) == 5.0
     assert not human[20:].any()

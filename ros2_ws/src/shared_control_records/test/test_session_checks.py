@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shared_control_records import topics
+from shared_control import contract
 from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.reader import read_bag
 from shared_control_testing import sessions as made
@@ -22,7 +22,7 @@ def findings(recording, path, **parameters):
 def applied_at(recording, tick):
     """The applied wrench of a tick."""
     at = made.START_NS + tick * MS
-    return next(sent for sent in recording.of(topics.APPLIED_WRENCH)
+    return next(sent for sent in recording.of(contract.APPLIED_WRENCH)
                 if sent.header.stamp.sec * 1_000_000_000 + sent.header.stamp.nanosec == at)
 
 
@@ -31,34 +31,34 @@ def test_nothing_is_wrong_with_a_good_bag(recording, tmp_path):
 
 
 def test_missing_and_silent_topics(recording, tmp_path):
-    recording.messages = [entry for entry in recording.messages if entry[0] != topics.CLOCK]
-    bag = read_bag(recording.write(tmp_path / 'bag', without=(topics.SUCCESS,)))
+    recording.messages = [entry for entry in recording.messages if entry[0] != contract.CLOCK]
+    bag = read_bag(recording.write(tmp_path / 'bag', without=(contract.SUCCESS,)))
     assert check_bag(bag) == ['/clock has no messages', '/training/success was not recorded']
-    assert check_bag(bag, expected=(topics.BALL, '/camera')) == ['/camera was not recorded']
+    assert check_bag(bag, expected=(contract.BALL.full_name, '/camera')) == ['/camera was not recorded']
 
 
 def test_a_gap_in_the_joint_states(recording, tmp_path):
-    recording.drop(topics.JOINT_STATES, 1000, 15)
+    recording.drop(contract.JOINT_STATES, 1000, 15)
     found = findings(recording, tmp_path)
     assert found[0] == '/joint_states: 1 gap, 15 ticks missing; the first after 0.999 s'
     assert found[1] == '/effort_controller/commands: 2400 commands for 2385 ticks of /joint_states'
 
 
 def test_a_missing_command(recording, tmp_path):
-    recording.drop(topics.EFFORT_COMMANDS, 1000, 3)
+    recording.drop(contract.EFFORT_COMMANDS, 1000, 3)
     assert findings(recording, tmp_path) == [
         '/effort_controller/commands: 2397 commands for 2400 ticks of /joint_states',
         '/effort_controller/commands: 3 ticks with a torque that was not commanded; the first after 1.001 s']
 
 
 def test_a_missing_applied_moment(recording, tmp_path):
-    recording.drop(topics.APPLIED_WRENCH, 100, 4)
+    recording.drop(contract.APPLIED_WRENCH, 100, 4)
     assert any('nothing for more than 20 ticks' in finding for finding in findings(recording, tmp_path))
 
 
 def test_a_repeated_tick_is_no_gap(recording, tmp_path):
-    state = recording.of(topics.JOINT_STATES)[500]
-    recording.add(topics.JOINT_STATES, made.START_NS + 500 * MS + 20, state)
+    state = recording.of(contract.JOINT_STATES)[500]
+    recording.add(contract.JOINT_STATES, made.START_NS + 500 * MS + 20, state)
     assert findings(recording, tmp_path) == []
 
 
@@ -66,8 +66,8 @@ def test_a_restarted_simulator_is_no_gap_but_a_jump_is(recording, tmp_path):
     later = made.record([made.lesson(20, seed=3)], start_ns=made.START_NS + 9_000 * MS)
     both = made.Recording(recording.messages + later.messages)
     assert findings(both, tmp_path / 'restarted') == []
-    both.messages = [entry for entry in both.messages if entry[0] != topics.DIAGNOSTICS]
-    both.add(topics.DIAGNOSTICS, made.START_NS, made.simulator_status(made.START_NS, 1))
+    both.messages = [entry for entry in both.messages if entry[0] != contract.DIAGNOSTICS]
+    both.add(contract.DIAGNOSTICS, made.START_NS, made.simulator_status(made.START_NS, 1))
     assert any('1 gap' in finding for finding in findings(both, tmp_path / 'jumped'))
 
 
@@ -107,14 +107,14 @@ def test_a_silent_source_fades(tmp_path):
     steady = made.lesson(60)
     steady.m_y_human[:], steady.m_y_agent[:] = 5.0, 1.0
     recording = made.record([steady])
-    recording.drop(topics.HUMAN_WRENCH, 50, 1000)
+    recording.drop(contract.HUMAN_WRENCH, 50, 1000)
     last = made.START_NS + 980 * MS
-    for sent in recording.of(topics.APPLIED_WRENCH):
+    for sent in recording.of(contract.APPLIED_WRENCH):
         age = (sent.header.stamp.sec * 1_000_000_000 + sent.header.stamp.nanosec - last) * 1e-9
         if age > 0.0:
             sent.wrench.torque.y = 1.0 + 5.0 * np.clip(1.0 - (age - 0.1) / 0.1, 0.0, 1.0)
     assert findings(recording, tmp_path / 'faded') == []
-    for sent in recording.of(topics.APPLIED_WRENCH):
+    for sent in recording.of(contract.APPLIED_WRENCH):
         sent.wrench.torque.y = 6.0 if sent.wrench.torque.y > 1.0 else sent.wrench.torque.y
     assert findings(recording, tmp_path / 'latched')
 
@@ -127,9 +127,9 @@ def test_a_source_that_comes_too_late_is_refused(tmp_path, late_ms, is_explained
     recording = made.record([steady])
     last = made.START_NS + 980 * MS
     recording.messages = [
-        (topic, ns + late_ms * MS * (topic == topics.HUMAN_WRENCH and ns > last + 10 * MS), content)
+        (topic, ns + late_ms * MS * (topic == contract.HUMAN_WRENCH and ns > last + 10 * MS), content)
         for topic, ns, content in recording.messages]
-    for sent in recording.of(topics.APPLIED_WRENCH):
+    for sent in recording.of(contract.APPLIED_WRENCH):
         age = (sent.header.stamp.sec * 1_000_000_000 + sent.header.stamp.nanosec - last) * 1e-9
         sent.wrench.torque.y = 1.0 + 5.0 * np.clip(1.0 - (age - 0.1) / 0.1, 0.0, 1.0)
     assert (findings(recording, tmp_path) == []) == is_explained
@@ -140,7 +140,7 @@ def test_messages_that_the_controller_drops(recording, tmp_path):
                         (1205, made.wrench(made.START_NS + 1205 * MS, 9.0, frame='world')),
                         (1305, made.wrench(made.START_NS + 1005 * MS, 9.0)),
                         (1405, made.wrench(made.START_NS + 1705 * MS, 9.0))):
-        recording.add(topics.HUMAN_WRENCH, made.START_NS + tick * MS, fault)
+        recording.add(contract.HUMAN_WRENCH, made.START_NS + tick * MS, fault)
     assert findings(recording, tmp_path) == []
 
 

@@ -9,9 +9,6 @@ SET_PARAMETERS = 'panda_sim_node/set_parameters'
 DISPLAYED = (
     contract.JOINT_STATES_THROTTLE, contract.BALL, contract.HUMAN_WRENCH, contract.AGENT_WRENCH,
     contract.APPLIED_WRENCH)
-TRAINING = (
-    contract.EPISODE, contract.PHASE, contract.TIME_LEFT, contract.EPISODE_RETURN, contract.HUMAN_SHARE,
-    contract.SUCCESS)
 ROBOT = (contract.JOINT_STATES, contract.JOINT_STATES_THROTTLE, contract.DIAGNOSTICS)
 
 
@@ -45,10 +42,10 @@ INTERFACES = {
         serves=('~/enable', '~/emergency_stop', '~/reset_emergency_stop')),
     'teleop_key_node': Interface(
         publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.DIAGNOSTICS),
-        hears=(contract.KEYS, *DISPLAYED, *TRAINING),
+        hears=(contract.KEYS, *DISPLAYED, *contract.TRAINING),
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
     'ppo_agent_node': Interface(
-        publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *TRAINING),
+        publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
         hears=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.APPLIED_WRENCH),
         serves=('~/finish', '~/start', '~/repeat'),
         calls=(contract.RESET_SERVICE, contract.PAUSE_SERVICE, SET_PARAMETERS)),
@@ -58,14 +55,14 @@ INTERFACES = {
                contract.PHASE)),
     'teach_page_node': Interface(
         publishes=(contract.KEYS,),
-        hears=(contract.KEYS, *DISPLAYED, *TRAINING),
+        hears=(contract.KEYS, *DISPLAYED, *contract.TRAINING),
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE, contract.START_SERVICE, contract.REPEAT_SERVICE)),
-    'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), hears=contract.TOPICS),
+    'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), hears=contract.BAG_TOPICS),
     'robot_view_node': Interface(
         publishes=('robot_description', 'markers', '/tf', contract.DIAGNOSTICS), hears=DISPLAYED),
     'operator': Interface(
         publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE),
-        hears=(*contract.TOPICS, contract.JOINT_STATES_THROTTLE),
+        hears=contract.TOPICS,
         calls=('torque_ctrl_node/enable', 'torque_ctrl_node/emergency_stop', 'torque_ctrl_node/reset_emergency_stop',
                'panda_bridge_node/enable', 'panda_bridge_node/error_recovery', 'mock_panda_node/error_recovery',
                contract.RESET_SERVICE, contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),

@@ -7,6 +7,7 @@ person: it sees late and inexactly, and presses keys. In any phase but ``teach``
 import math
 
 import numpy as np
+from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
@@ -62,7 +63,7 @@ class SimTutorNode:
                 self._background.poll()
                 self._diagnostics.publish({}, phase=self._lesson.phase or '', presses=self._keys.presses)
 
-    def _watch(self, ball: contract.Odometry) -> None:
+    def _watch(self, ball: Odometry) -> None:
         """One look at the tray."""
         self._diagnostics.tick()
         self._follow_lesson(to_ns(ball.header.stamp))

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from shared_control.contract import BASE_FRAME
 from shared_control.control.moments import freshness
 
-from ..topics import BASE_FRAME
 from .reader import Bag
 from .recorded import Wrenches
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from shared_control.contract import BASE_FRAME
 from shared_control.control.moments import freshness
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import PandaModel, pitch
@@ -10,7 +11,6 @@ from shared_control.robot.model import PandaModel, pitch
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
 from ..bag.recorded import Wrenches
-from ..topics import BASE_FRAME
 
 PERIOD_NS = round(POLICY_PERIOD * 1e9)
 COMMAND_TIMEOUT = 0.1

@@ -1,0 +1,122 @@
+"""The contract of the graph as data: its topics, services and frames.
+
+``shared_control_ros.contract`` adds rclpy's types; :mod:`shared_control.contract_tables` prints it as text.
+"""
+
+from dataclasses import dataclass
+
+BASE_FRAME = 'panda_link0'
+BALL_FRAME = 'ball'
+RECORDER_DEPTH = 2000
+"""Messages of each topic that may wait for a recorder: two seconds of a 1 kHz topic."""
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic. Quality of service: reliable, keep last."""
+
+    name: str
+    """Relative, so that a namespace or a remapping reaches it."""
+    type: str
+    depth: int
+    """What publishers offer: a second's worth of messages, so that a recorder loses none."""
+    publishers: str
+    subscribers: str
+    rate: str
+    what: str
+    latched: bool = False
+    """Transient local, for those who join late; else volatile."""
+    in_bag: bool = True
+
+    @property
+    def full_name(self) -> str:
+        """The name in a graph without a namespace, as bags have it."""
+        return '/' + self.name.removeprefix('/')
+
+
+@dataclass(frozen=True)
+class Service:
+    """One service; its name is relative."""
+
+    name: str
+    type: str
+    server: str
+    what: str
+
+
+JOINT_STATES = Topic(
+    'joint_states', 'sensor_msgs/msg/JointState', 1000, 'robot', 'controller, recorder', '1 kHz',
+    'rad, rad/s; `effort`: the torque applied last, N m')
+JOINT_STATES_THROTTLE = Topic(
+    'joint_states_throttle', 'sensor_msgs/msg/JointState', 100, 'robot', 'agent, tutor, screens, views', '100 Hz',
+    'every tenth of them; not in bags', in_bag=False)
+"""For those who need no more: each reader of the 1 kHz topic makes the robot's tick longer. (On a robot that does not
+publish it, ``topic_tools throttle messages joint_states 100`` does.)"""
+EFFORT_COMMANDS = Topic(
+    'effort_controller/commands', 'std_msgs/msg/Float64MultiArray', 1000, 'controller', 'robot', '1 kHz',
+    '7 torques, N m')
+KEYS = Topic(
+    'human/keys', 'sensor_msgs/msg/Joy', 50, 'any source of keys', 'teleop', 'on event, 10 Hz or more',
+    'buttons = left, right, space')
+HUMAN_WRENCH = Topic(
+    'human/target_wrench', 'geometry_msgs/msg/WrenchStamped', 50, 'teleop', 'controller, agent, tutor',
+    '50 Hz, zero included', '`torque.y` = M_yh, N m')
+AGENT_WRENCH = Topic(
+    'agent/target_wrench', 'geometry_msgs/msg/WrenchStamped', 50, 'agent', 'controller, screens', '50 Hz',
+    '`torque.y` = M_yai, N m')
+APPLIED_WRENCH = Topic(
+    'target_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent, screens', 'on change, 100 Hz',
+    '`torque.y` = M_y as applied, N m')
+BALL = Topic(
+    'ball', 'nav_msgs/msg/Odometry', 100, 'robot', 'agent, tutor, screens, views', '100 Hz',
+    'm, m/s in `panda_link0`')
+DISTURBANCE = Topic(
+    'disturbance', 'geometry_msgs/msg/WrenchStamped', 10, 'tests', 'simulator', 'on event', 'force at the tray, N')
+EMERGENCY_STOP = Topic(
+    'emergency_stop', 'std_msgs/msg/Bool', 10, 'anybody', 'controller', 'on event',
+    'true stops; false changes nothing')
+DIAGNOSTICS = Topic(
+    'diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', 10, 'all nodes', '', '1 Hz',
+    'period p50 and p99, overruns, what is silent')
+CLOCK = Topic('/clock', 'rosgraph_msgs/msg/Clock', 100, 'simulator', 'all', '100 Hz', 'simulation time')
+"""Absolute: rclpy expects it there, whatever the namespace."""
+EPISODE = Topic(
+    'training/episode', 'std_msgs/msg/Int32', 100, 'agent', '', 'start of an episode', 'from 1', latched=True)
+PHASE = Topic(
+    'training/phase', 'std_msgs/msg/String', 100, 'agent', '', 'on change',
+    '`practice`, `teach`, `learn`, `test`, `wait`, `done`', latched=True)
+TIME_LEFT = Topic(
+    'training/time_left', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz', 's, of the episode', latched=True)
+EPISODE_RETURN = Topic(
+    'training/episode_return', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of an episode',
+    'sum of the unscaled reward', latched=True)
+HUMAN_SHARE = Topic(
+    'training/human_share', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz',
+    r'0..1: mean of \|M_yh\| / (\|M_yh\| + \|M_yai\|) over the episode so far', latched=True)
+SUCCESS = Topic('training/success', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of a test', '0..1', latched=True)
+
+TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
+TOPICS = (
+    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH, BALL,
+    DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING)
+BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
+"""What a recorder records."""
+
+RESET = Service('panda_sim_node/reset', 'std_srvs/srv/Trigger', 'simulator', 'drop the ball anew')
+PAUSE = Service('panda_sim_node/pause', 'std_srvs/srv/SetBool', 'simulator', 'time stands still, or goes on')
+ENABLE = Service('torque_ctrl_node/enable', 'std_srvs/srv/SetBool', 'controller', 'send torques, or none')
+STOP = Service('torque_ctrl_node/emergency_stop', 'std_srvs/srv/Trigger', 'controller', 'disable, until it is reset')
+RESET_STOP = Service(
+    'torque_ctrl_node/reset_emergency_stop', 'std_srvs/srv/Trigger', 'controller', 'end the emergency stop')
+START = Service('ppo_agent_node/start', 'std_srvs/srv/Trigger', 'agent', 'end the practice, teach')
+REPEAT = Service('ppo_agent_node/repeat', 'std_srvs/srv/Trigger', 'agent', 'start the episode over')
+FINISH = Service('ppo_agent_node/finish', 'std_srvs/srv/Trigger', 'agent', 'end the teaching after this episode')
+MOCK_RECOVERY = Service(
+    'mock_panda_node/error_recovery', 'std_srvs/srv/Trigger', 'mock of a robot', 'leave a reflex stop')
+BRIDGE_RECOVERY = Service(
+    'panda_bridge_node/error_recovery', 'std_srvs/srv/Trigger', 'bridge to a robot', 'leave a reflex stop')
+BRIDGE_ENABLE = Service(
+    'panda_bridge_node/enable', 'std_srvs/srv/SetBool', 'bridge to a robot', 'move the arm, or let it hold itself')
+
+SERVICES = (
+    RESET, PAUSE, ENABLE, STOP, RESET_STOP, START, REPEAT, FINISH, MOCK_RECOVERY, BRIDGE_RECOVERY, BRIDGE_ENABLE)
