@@ -67,7 +67,7 @@ class GraphPlant:
         """Wait until the simulator and the controller are there."""
         while not (self._simulator.is_there() and self._applied.publisher_count()):
             self._node.get_logger().info(
-                'waiting for panda_sim_node and torque_ctrl_node', throttle_duration_sec=5.0)
+                'waiting for the simulator and the controller', throttle_duration_sec=5.0)
             time.sleep(0.1)
             self._attend()
 
@@ -130,7 +130,7 @@ class GraphPlant:
             if time.monotonic() - silent_since > 1.0:
                 self._node.get_logger().info(
                     f'{self._balls.topic_name} has been silent for {time.monotonic() - silent_since:.0f} s: paused, or '
-                    'waiting for torque_ctrl_node', throttle_duration_sec=5.0)
+                    'waiting for the controller', throttle_duration_sec=5.0)
         return newest
 
     def _check_sender(self, number: int) -> None:

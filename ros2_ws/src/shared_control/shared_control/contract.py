@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 BASE_FRAME = 'panda_link0'
 BALL_FRAME = 'ball'
+_TRIGGER = 'std_srvs/srv/Trigger'
+_SET_BOOL = 'std_srvs/srv/SetBool'
 RECORDER_DEPTH = 2000
 """Messages of each topic that may wait for a recorder: two seconds of a 1 kHz topic."""
 
@@ -36,9 +38,10 @@ class Topic:
 
 @dataclass(frozen=True)
 class Service:
-    """One service; its name is relative."""
+    """One service."""
 
     name: str
+    """Relative, and of the role that serves it: a node of another name takes the role as it is."""
     type: str
     server: str
     what: str
@@ -102,21 +105,23 @@ TOPICS = (
 BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
 """What a recorder records."""
 
-RESET = Service('panda_sim_node/reset', 'std_srvs/srv/Trigger', 'simulator', 'drop the ball anew')
-PAUSE = Service('panda_sim_node/pause', 'std_srvs/srv/SetBool', 'simulator', 'time stands still, or goes on')
-ENABLE = Service('torque_ctrl_node/enable', 'std_srvs/srv/SetBool', 'controller', 'send torques, or none')
-STOP = Service('torque_ctrl_node/emergency_stop', 'std_srvs/srv/Trigger', 'controller', 'disable, until it is reset')
-RESET_STOP = Service(
-    'torque_ctrl_node/reset_emergency_stop', 'std_srvs/srv/Trigger', 'controller', 'end the emergency stop')
-START = Service('ppo_agent_node/start', 'std_srvs/srv/Trigger', 'agent', 'end the practice, teach')
-REPEAT = Service('ppo_agent_node/repeat', 'std_srvs/srv/Trigger', 'agent', 'start the episode over')
-FINISH = Service('ppo_agent_node/finish', 'std_srvs/srv/Trigger', 'agent', 'end the teaching after this episode')
-MOCK_RECOVERY = Service(
-    'mock_panda_node/error_recovery', 'std_srvs/srv/Trigger', 'mock of a robot', 'leave a reflex stop')
-BRIDGE_RECOVERY = Service(
-    'panda_bridge_node/error_recovery', 'std_srvs/srv/Trigger', 'bridge to a robot', 'leave a reflex stop')
-BRIDGE_ENABLE = Service(
-    'panda_bridge_node/enable', 'std_srvs/srv/SetBool', 'bridge to a robot', 'move the arm, or let it hold itself')
+RESET = Service('simulator/reset', _TRIGGER, 'simulator, mock', 'arm to the reference, ball dropped anew')
+PAUSE = Service('simulator/pause', _SET_BOOL, 'simulator, mock', 'time stands still, or goes on; refused by a robot')
+SEED = Service(
+    'simulator/set_parameters', 'rcl_interfaces/srv/SetParameters', 'simulator, mock',
+    '`seed` alone: begins the sequence of ball starts anew')
+LEARNER_START = Service('learner/start', _TRIGGER, 'agent', 'end the practice, teach')
+LEARNER_REPEAT = Service('learner/repeat', _TRIGGER, 'agent', 'the episode is void: start it over, with the same ball')
+LEARNER_FINISH = Service(
+    'learner/finish', _TRIGGER, 'agent', 'end the teaching after this episode; then test, and leave')
+CONTROLLER_ENABLE = Service('controller/enable', _SET_BOOL, 'controller', 'send torques, or none')
+CONTROLLER_STOP = Service(
+    'controller/emergency_stop', _TRIGGER, 'controller', 'disable, until it is reset; wins over `controller/enable`')
+CONTROLLER_RESET = Service(
+    'controller/reset_emergency_stop', _TRIGGER, 'controller', 'the emergency stop is over; still disabled')
+ROBOT_ENABLE = Service('robot/enable', _SET_BOOL, 'bridge', 'move the arm, or let it hold itself')
+ROBOT_RECOVERY = Service('robot/error_recovery', _TRIGGER, 'bridge, mock', 'leave a reflex stop')
 
 SERVICES = (
-    RESET, PAUSE, ENABLE, STOP, RESET_STOP, START, REPEAT, FINISH, MOCK_RECOVERY, BRIDGE_RECOVERY, BRIDGE_ENABLE)
+    RESET, PAUSE, SEED, LEARNER_START, LEARNER_REPEAT, LEARNER_FINISH, CONTROLLER_ENABLE, CONTROLLER_STOP,
+    CONTROLLER_RESET, ROBOT_ENABLE, ROBOT_RECOVERY)

@@ -8,6 +8,7 @@ from shared_control.teaching.keys import Key
 from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import episode_tracks
 from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_records.bag.timing import simulator_runs
 from shared_control_testing import sessions as made
 
 
@@ -36,6 +37,16 @@ def test_every_message_comes_back(recording, tmp_path):
     np.testing.assert_array_equal(bag.training[contract.PHASE].values, ['teach', 'teach'])
     assert bag.statuses['panda_sim_node'][-1].number('ticks') == 2000
     assert bag.statuses['panda_sim_node'][-1].number('nothing') is None
+
+
+def test_a_simulator_is_known_by_what_it_reports(tmp_path):
+    recording = made.Recording()
+    for second, node, ticks in ((1, 'robot1/a_simulator', 900), (2, 'robot1/a_simulator', 1900), (3, 'another', 700)):
+        at = made.START_NS + second * 1_000_000_000
+        recording.add(contract.DIAGNOSTICS, at, made.simulator_status(at, ticks, node))
+        recording.add(contract.DIAGNOSTICS, at + 1, made.status(at, 'mock_panda_node', ticks=5 * ticks))
+    runs = simulator_runs(read_bag(recording.write(tmp_path / 'bag')))
+    assert [run.number('ticks') for run in runs] == [1900, 700]
 
 
 def test_a_bag_of_several_blocks_with_odd_messages(recording, tmp_path, monkeypatch):

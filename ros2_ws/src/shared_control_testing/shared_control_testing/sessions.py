@@ -180,9 +180,9 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
     return recording
 
 
-def simulator_status(ns: int, ticks: int) -> Any:
-    """What panda_sim_node says of itself."""
-    return status(ns, 'panda_sim_node', ticks=ticks, tick_p50_ms='0.61', tick_p99_ms='0.93', late_ticks=ticks // 100,
+def simulator_status(ns: int, ticks: int, node: str = 'panda_sim_node') -> Any:
+    """What a simulator reports of itself."""
+    return status(ns, node, ticks=ticks, tick_p50_ms='0.61', tick_p99_ms='0.93', late_ticks=ticks // 100,
                   running_seconds=f'{ticks * 1.001e-3:.3f}', simulated_seconds=f'{ticks * 1e-3:.3f}')
 
 

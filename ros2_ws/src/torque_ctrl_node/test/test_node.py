@@ -183,7 +183,7 @@ class TestSafety:
     """A controller that nobody has enabled, from one state to the next."""
 
     def ask(self, robot, service, request=None):
-        return robot.observer.call(type_of(request), f'torque_ctrl_node/{service}', request or Trigger.Request())
+        return robot.observer.call(type_of(request), f'controller/{service}', request or Trigger.Request())
 
     def answers(self, robot, ticks=3, **state):
         """The torques that answer some ticks."""
@@ -208,7 +208,7 @@ class TestSafety:
         return self.ask(robot, 'enable', SetBool.Request(data=True))
 
     def test_starts_disabled_and_says_how_to_go_on(self, disabled, robot_at_rest):
-        disabled.wait_for_log('disabled: /torque_ctrl_node/enable to go on')
+        disabled.wait_for_log('disabled: /controller/enable to go on')
         assert self.answers(robot_at_rest) == []
 
     def test_is_not_enabled_far_from_the_reference(self, robot_at_rest):

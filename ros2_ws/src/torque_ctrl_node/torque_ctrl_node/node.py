@@ -55,7 +55,8 @@ class TorqueCtrlNode:
             node, 'wait_for', ['none'], 'Sources to wait for at every policy tick, for results that do not depend '
             'on timing.', choices=('none', 'human', 'agent'))
         enabled = declare(
-            node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls ~/enable.')
+            node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls '
+            'controller/enable.')
 
         self._controller = ComputedTorqueController(
             PandaModel(), GAINS[gains], CONTROL_PERIOD, horizon, robot_compensates_gravity=compensates)
