@@ -39,6 +39,7 @@ def test_the_committed_policy_is_up_to_date():
 
 def test_what_moves_the_robot_may_come_from_one_node_only(allowed):
     for topic, only in (('/effort_controller/commands', 'torque_ctrl_node'), ('/target_wrench', 'torque_ctrl_node'),
+                        ('/human/applied_wrench', 'torque_ctrl_node'), ('/agent/applied_wrench', 'torque_ctrl_node'),
                         ('/human/target_wrench', 'teleop_key_node'), ('/agent/target_wrench', 'ppo_agent_node'),
                         ('/emergency_stop', 'operator')):
         assert [node for node, rules in allowed.items() if topic in rules['publish']] == [only]

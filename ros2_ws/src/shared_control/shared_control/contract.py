@@ -70,6 +70,12 @@ AGENT_WRENCH = Topic(
 APPLIED_WRENCH = Topic(
     'target_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent, screens', 'on change, 100 Hz',
     '`torque.y` = M_y as applied, N m')
+HUMAN_APPLIED = Topic(
+    'human/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent', 'with `/target_wrench`',
+    "M_yh as it counted in the sum, N m: the person's part, faded when stale, before the sum is clamped")
+AGENT_APPLIED = Topic(
+    'agent/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', '', 'with `/target_wrench`',
+    "M_yai as it counted in the sum, N m: the agent's part, likewise")
 BALL = Topic(
     'ball', 'nav_msgs/msg/Odometry', 100, 'robot', 'agent, tutor, screens, views', '100 Hz',
     'm, m/s in `panda_link0`')
@@ -100,8 +106,8 @@ SUCCESS = Topic('training/success', 'std_msgs/msg/Float64', 100, 'agent', '', 'e
 
 TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
 TOPICS = (
-    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH, BALL,
-    DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING)
+    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH,
+    HUMAN_APPLIED, AGENT_APPLIED, BALL, DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING)
 BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
 """What a recorder records."""
 

@@ -40,7 +40,8 @@ INTERFACES = {
         publishes=ROBOT, subscribes=(contract.EFFORT_COMMANDS,),
         serves=(contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE)),
     'torque_ctrl_node': Interface(
-        publishes=(contract.EFFORT_COMMANDS, contract.APPLIED_WRENCH, contract.DIAGNOSTICS),
+        publishes=(contract.EFFORT_COMMANDS, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
+                   contract.DIAGNOSTICS),
         subscribes=(contract.JOINT_STATES, contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.EMERGENCY_STOP),
         serves=CONTROLLER),
     'teleop_key_node': Interface(
@@ -49,7 +50,7 @@ INTERFACES = {
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
     'ppo_agent_node': Interface(
         publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
-        subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.APPLIED_WRENCH),
+        subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.APPLIED_WRENCH),
         serves=(contract.START_SERVICE, contract.REPEAT_SERVICE, contract.FINISH_SERVICE),
         calls=SIMULATOR),
     'sim_tutor_node': Interface(

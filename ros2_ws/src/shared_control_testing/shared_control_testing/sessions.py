@@ -18,6 +18,8 @@ from shared_control.robot.posture import Q_REFERENCE
 STORE = get_typestore(Stores.ROS2_JAZZY)
 START_NS = 1_795_354_200_000_000_000
 MS = 1_000_000
+APPLIED = (contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)
+"""What the controller publishes of the moments that it used: the sum and its parts."""
 
 
 def message(kind: str, **fields: Any) -> Any:
@@ -144,7 +146,7 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
     tray_x = float(PandaModel().tray_pose(Q_REFERENCE)[0][0])
     effort = np.full(DOF, 7.0)
     tick = 0
-    agent, human, applied = 0.0, 0.0, 0.0
+    agent, human, used = 0.0, 0.0, (0.0, 0.0, 0.0)
     ticks = sum(20 * len(one.position_error) for one in lessons)
     for number, one in enumerate(lessons, start=1):
         at = start_ns + tick * MS
@@ -164,12 +166,12 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
                 recording.add(contract.BALL, at + 1000, ball(at, tray_x - one.position_error[step]))
             velocity = np.full(DOF, 0.0 if own_tick == 0 else 0.01)
             recording.add(contract.JOINT_STATES, at + 10, joint_state(at, Q_REFERENCE, velocity, effort))
-            total = min(max(agent + human, -20.0), 20.0)
             effort = np.full(DOF, 7.0) + tick * 1e-6
             recording.add(contract.EFFORT_COMMANDS, at + 500_000, command(effort))
-            if total != applied or tick % 10 == 0:
-                applied = total
-                recording.add(contract.APPLIED_WRENCH, at + 600_000, wrench(at, total))
+            before, used = used, (min(max(agent + human, -20.0), 20.0), human, agent)
+            if used != before or tick % 10 == 0:
+                for topic, moment in zip(APPLIED, used, strict=True):
+                    recording.add(topic, at + 600_000, wrench(at, moment))
             if tick % 100 == 0:
                 recording.add(contract.KEYS, at, keys(at, 'tutor', (int(tick % 200 == 0), 0, 0)))
             if tick % 1000 == 999 or tick == ticks - 1:

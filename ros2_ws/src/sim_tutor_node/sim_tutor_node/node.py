@@ -22,6 +22,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
 from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.wrenches import moment_of
 
 from .key_publisher import KeyPublisher
 
@@ -73,10 +74,10 @@ class SimTutorNode:
             except ValueError as error:
                 self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:
-            if math.isfinite(wrench.wrench.torque.y):
-                self._m_y_human = wrench.wrench.torque.y
-            else:
-                self._complain(self._human, f'torque.y is {wrench.wrench.torque.y}')
+            try:
+                self._m_y_human = moment_of(wrench)
+            except ValueError as error:
+                self._complain(self._human, str(error))
         if self._lesson.phase != 'teach' or self._q is None:
             return
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear

@@ -14,7 +14,7 @@ from .picture import Picture
 LONGEST_STILL = 2.0
 """Of a longer gap in the recording (between two runs of a session) as much is played, s."""
 STALE_AFTER = 0.2
-"""A moment that is older has ended, s."""
+"""The controller repeats its moments; it was not there when they are older, s of the recorder's clock."""
 
 
 class Recording:
@@ -51,7 +51,8 @@ class Recording:
         training = self._bag.training
         return Picture(
             q=q, ball=ball, ball_on_tray=rotation.T @ (ball - origin), pitch=pitch(rotation),
-            m_y_human=_moment(self._bag.human, now_ns), m_y_agent=_moment(self._bag.agent, now_ns),
+            m_y_human=_moment(self._bag.human_applied, now_ns),
+            m_y_agent=_moment(self._bag.agent_applied, now_ns),
             m_y_applied=_moment(self._bag.applied, now_ns),
             phase=_latest(training[contract.PHASE], now_ns), episode=_latest(training[contract.EPISODE], now_ns),
             time_left=_latest(training[contract.TIME_LEFT], now_ns),

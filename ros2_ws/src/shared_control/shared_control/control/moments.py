@@ -10,7 +10,11 @@ def freshness(age: float, timeout: float) -> float:
     """The part of a command of a given age (s) that still counts.
 
     1 up to ``timeout`` (s), then falling to 0 within ``FADE_TIME``: a source that vanishes neither latches nor jerks.
+    0 for a command whose stamp is further ahead than ``timeout``: time has been set back, and the source has not sent
+    anything since.
     """
+    if age < -timeout:
+        return 0.0
     return min(max(1.0 - (age - timeout) / FADE_TIME, 0.0), 1.0)
 
 
@@ -27,10 +31,10 @@ class MomentSource:
     """N m"""
     stamp_ns: int = 0
 
-    def at(self, now_ns: int, timeout: float) -> float:
-        """The moment that counts at ``now_ns``, N m: nothing when none came for ``timeout`` seconds and more."""
-        return self.m_y * freshness((now_ns - self.stamp_ns) * 1e-9, timeout)
+    def age(self, now_ns: int) -> float:
+        """How old it is at ``now_ns``, s; negative when its stamp is ahead."""
+        return (now_ns - self.stamp_ns) * 1e-9
 
-    def is_stale(self, now_ns: int, timeout: float) -> bool:
-        """Whether the last message is older than ``timeout`` seconds."""
-        return (now_ns - self.stamp_ns) * 1e-9 > timeout
+    def at(self, now_ns: int, timeout: float) -> float:
+        """The moment that counts at ``now_ns``, N m: nothing when its stamp is off by ``timeout`` seconds and more."""
+        return self.m_y * freshness(self.age(now_ns), timeout)

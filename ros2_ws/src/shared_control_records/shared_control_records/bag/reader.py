@@ -14,10 +14,13 @@ from shared_control.contract import Topic
 from shared_control.robot.limits import DOF, JOINT_NAMES
 from shared_control.teaching.keys import KeyPresses
 
-from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout
+from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
 
-_WRENCHES = (contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.DISTURBANCE)
+_WRENCHES = (
+    contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
+    contract.AGENT_APPLIED, contract.DISTURBANCE)
+_SMALLEST_WRENCH = 64
 _SMALLEST_JOINT_STATE = 192
 _SMALLEST_COMMAND = 60
 
@@ -42,8 +45,15 @@ class Bag:
     joint_states: JointStates
     commands: Commands
     human: Wrenches
+    """What the person asked for."""
     agent: Wrenches
+    """What the agent asked for."""
     applied: Wrenches
+    """The sum, as the controller applied it."""
+    human_applied: Wrenches
+    """What counted of the person's moment."""
+    agent_applied: Wrenches
+    """What counted of the agent's moment."""
     disturbance: Wrenches
     ball: BallTrack
     training: dict[Topic, Series]
@@ -84,11 +94,12 @@ class _Collector:
         self._bulk = {
             contract.JOINT_STATES.full_name: BulkTopic(
                 self._joint_state, joint_state_layout, _SMALLEST_JOINT_STATE),
-            contract.EFFORT_COMMANDS.full_name: BulkTopic(self._command, command_layout, _SMALLEST_COMMAND)}
+            contract.EFFORT_COMMANDS.full_name: BulkTopic(self._command, command_layout, _SMALLEST_COMMAND),
+            **{topic.full_name: BulkTopic(self._wrench, wrench_layout, _SMALLEST_WRENCH) for topic in _WRENCHES}}
         self._rows: dict[str, list[tuple[Any, ...]]] = {}
-        self._decoders = {topic.full_name: decode for topics, decode in (
-            (_WRENCHES, _wrench), ((contract.BALL,), _ball), (contract.TRAINING, lambda message: (message.data,)))
-            for topic in topics}
+        self._decoders = {
+            contract.BALL.full_name: _ball,
+            **{topic.full_name: lambda message: (message.data,) for topic in contract.TRAINING}}
         self._keys: dict[str, KeyPresses] = {}
         self._presses: list[Press] = []
         self._statuses: dict[str, list[Status]] = {}
@@ -118,7 +129,9 @@ class _Collector:
                 contract.JOINT_STATES, _no_stamps(), *(np.empty((0, DOF)) for _ in range(3)))),
             commands=Commands(*self._bulk_columns(contract.EFFORT_COMMANDS, np.empty((0, DOF)))),
             human=self._wrenches(contract.HUMAN_WRENCH), agent=self._wrenches(contract.AGENT_WRENCH),
-            applied=self._wrenches(contract.APPLIED_WRENCH), disturbance=self._wrenches(contract.DISTURBANCE),
+            applied=self._wrenches(contract.APPLIED_WRENCH),
+            human_applied=self._wrenches(contract.HUMAN_APPLIED),
+            agent_applied=self._wrenches(contract.AGENT_APPLIED), disturbance=self._wrenches(contract.DISTURBANCE),
             ball=BallTrack(*self._columns(contract.BALL, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
             training={topic: Series(*self._columns(topic, np.empty(0))) for topic in contract.TRAINING},
             presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
@@ -129,7 +142,7 @@ class _Collector:
         self._unusable[topic.full_name] += bulk.unusable
         if not columns:
             return times, *empty
-        if topic == contract.JOINT_STATES:  # seconds and nanoseconds
+        if topic != contract.EFFORT_COMMANDS:  # which alone have no stamp: seconds and nanoseconds
             columns[0] = columns[0].astype(np.int64) @ np.array([1_000_000_000, 1])
         return times, *columns
 
@@ -138,8 +151,7 @@ class _Collector:
         return tuple(np.array(column) for column in zip(*rows, strict=True)) if rows else (_no_stamps(), *empty)
 
     def _wrenches(self, topic: Topic) -> Wrenches:
-        return Wrenches(*self._columns(
-            topic, _no_stamps(), np.empty(0, str), np.empty((0, 3)), np.empty((0, 3))))
+        return Wrenches(*self._bulk_columns(topic, _no_stamps(), np.empty((0, 3)), np.empty((0, 3))))
 
     def _joint_state(self, raw: bytes) -> Row | None:
         message: Any = self._reader.deserialize(raw, contract.JOINT_STATES.type)
@@ -148,6 +160,14 @@ class _Collector:
             return None
         stamp = message.header.stamp
         return np.array([stamp.sec, stamp.nanosec]), message.position, message.velocity, message.effort
+
+    def _wrench(self, raw: bytes) -> Row | None:
+        message: Any = self._reader.deserialize(raw, contract.APPLIED_WRENCH.type)
+        if message.header.frame_id != contract.BASE_FRAME:
+            return None
+        stamp, force, torque = message.header.stamp, message.wrench.force, message.wrench.torque
+        return (np.array([stamp.sec, stamp.nanosec]), np.array([force.x, force.y, force.z]),
+                np.array([torque.x, torque.y, torque.z]))
 
     def _command(self, raw: bytes) -> Row | None:
         message: Any = self._reader.deserialize(raw, contract.EFFORT_COMMANDS.type)
@@ -167,11 +187,6 @@ class _Collector:
             values = {value.key: value.value for value in status.values}
             self._statuses.setdefault(status.name.lstrip('/'), []).append(
                 Status(received_ns, status.level == 0, status.message, values))
-
-
-def _wrench(message: Any) -> tuple[Any, ...]:
-    force, torque = message.wrench.force, message.wrench.torque
-    return (_stamp_ns(message), message.header.frame_id, (force.x, force.y, force.z), (torque.x, torque.y, torque.z))
 
 
 def _ball(message: Any) -> tuple[Any, ...]:

@@ -84,5 +84,4 @@ def summarize(folder: SessionFolder, bag: Bag | None, bag_error: str | None, row
 
 def _bag_checks(folder: SessionFolder, bag: Bag) -> list[str]:
     controller = folder.ros_parameters(CONTROLLER)
-    return check_bag(bag, moment_limit=float(controller.get('moment_limit', 20.0)),
-                     command_timeout=float(controller.get('command_timeout', 0.1)))
+    return check_bag(bag, moment_limit=float(controller.get('moment_limit', 20.0)))
