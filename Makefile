@@ -25,6 +25,7 @@ $(VENV)/ready: requirements.txt setup.py pyproject.toml $(wildcard $(SRC)/*/setu
 	@$(PYTHON) tools/check_machine.py
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --disable-pip-version-check --requirement requirements.txt
+	@rm -rf shared_control.egg-info  # left by pip install . it would hide what the environment has
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation \
 	    --editable . --editable $(SRC)/shared_control_testing
 	@touch $@
@@ -54,4 +55,4 @@ colcon: setup
 	PYTHON=$(BIN)/python tools/colcon.sh $(ARGS)
 
 clean:
-	rm -rf $(VENV) ros2_ws/build ros2_ws/install ros2_ws/log
+	rm -rf $(VENV) build shared_control.egg-info ros2_ws/build ros2_ws/install ros2_ws/log

@@ -8,16 +8,17 @@ import statistics
 import time
 from typing import Any
 
-from shared_control_sim.bullet import BallOnTrayWorld
+import numpy as np
+from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.local_plant import LocalPlant
 
 ROUNDS = 7
 TICKS = 4000
-LEVEL = -2.1
+LEVEL = np.array([-2.1])
 """The moment that keeps the tray level, N m: the ball stays on it, in contact."""
 
 
-class TimedWorld(BallOnTrayWorld):
+class TimedWorld(BulletWorld):
     """A world that keeps how long its last physics step took, s."""
 
     def _advance(self) -> None:

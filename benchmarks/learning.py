@@ -21,15 +21,14 @@ from typing import Any
 
 import numpy as np
 from scipy.stats import bootstrap
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.teaching.profiles import profile
-from shared_control_learning.callbacks import Hooks
-from shared_control_learning.evaluation.evaluate import Evaluation, test_settings
-from shared_control_learning.evaluation.randomized import run_randomized
+from shared_control_learning.callbacks import Callbacks
+from shared_control_learning.episode import Episode
+from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.learn import learn
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import preset
-from shared_control_learning.record import EpisodeRecord
 from shared_control_learning.training import TEST_SEED, passes_now, train
 from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
@@ -96,29 +95,31 @@ def taught(condition: Condition, seed: int, folder: Path, limit: int | None) -> 
 def final_test(policy: Path, seed: int) -> dict[str, float]:
     """The randomised test of a policy."""
     learner = load_policy(policy)
-    test = Evaluation(run_randomized(learner.act, learner.preset.task, seed=TEST_SEED + seed).episodes)
+    env = SharedControlEnv(LocalPlant(learner.task), as_tested(learner.task))
+    test = evaluate(learner.act, env, seed=TEST_SEED + seed)
+    env.close()
     return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
 
 
-class _TestNowAndThen(Hooks):
+class _TestNowAndThen(Callbacks):
     """Tests after every few episodes."""
 
-    def __init__(self, learner: Any, env: BalanceEnv, seed: int):
+    def __init__(self, learner: Any, env: SharedControlEnv, seed: int):
         self._learner, self._env, self._seed = learner, env, seed
         self._skilled = learner.episode
         self.passed: list[bool] = []
 
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
-        if (record.episode - self._skilled) % RETENTION_TESTED_EVERY == 0:
+    def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
+        """See :class:`Callbacks`."""
+        if (episode.number - self._skilled) % RETENTION_TESTED_EVERY == 0:
             self.passed.append(passes_now(self._learner, self._env, self._seed))
 
 
 def retained(policy: Path, seed: int) -> list[bool]:
     """Go on learning without the tutor: whether the policy passed whenever it was tested."""
     learner = load_policy(policy)
-    task = learner.preset.task
-    env, test_env = (BalanceEnv(LocalPlant(None, task.moment_limit), s) for s in (task, test_settings(task)))
+    task = learner.task
+    env, test_env = (SharedControlEnv(LocalPlant(task), s) for s in (task, as_tested(task)))
     watch = _TestNowAndThen(learner, test_env, seed)
     learn(learner, env, learner.episode + RETENTION_EPISODES, watch)
     env.close()

@@ -4,24 +4,24 @@ import statistics
 from typing import Any
 
 from shared_control.teaching.profiles import profile
-from shared_control_learning.callbacks import Hooks
+from shared_control_learning.callbacks import Callbacks
+from shared_control_learning.episode import Episode
 from shared_control_learning.presets import preset
-from shared_control_learning.record import EpisodeRecord
 from shared_control_learning.training import train
 
 SEEDS = range(3)
 EPISODES = 40
 
 
-class _Pauses(Hooks):
+class _Pauses(Callbacks):
     """Notes how long each update took."""
 
     def __init__(self) -> None:
         self.seconds: list[float] = []
 
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
-        self.seconds.append(record.learn_seconds)
+    def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
+        """See :class:`Callbacks`."""
+        self.seconds.append(episode.learn_seconds)
 
 
 def measure() -> dict[str, Any]:
@@ -29,8 +29,8 @@ def measure() -> dict[str, Any]:
     (``learn``)."""
     pauses = _Pauses()
     figures: dict[str, Any] = {}
-    for name, tutor, hooks in (('coached', profile('expert'), pauses), ('autonomous', None, Hooks())):
-        runs = [train(preset(name), tutor, seed, EPISODES, hooks=hooks) for seed in SEEDS]
+    for name, tutor, callbacks in (('coached', profile('expert'), pauses), ('autonomous', None, Callbacks())):
+        runs = [train(preset(name), tutor, seed, EPISODES, callbacks=callbacks) for seed in SEEDS]
         seconds = sorted(round(run.seconds, 1) for run in runs)
         figures[f'{name}_to_skilled_s'] = statistics.median(seconds)
         figures[f'{name}_to_skilled_s_min_max'] = [seconds[0], seconds[-1]]

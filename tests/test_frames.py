@@ -16,7 +16,7 @@ from shared_control_ros import contract
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.stamps import to_ns
 from shared_control_ros.state_publisher import StatePublisher
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.bullet import BulletWorld
 from urdf_parser_py.urdf import URDF
 
 TOLERANCE = 1e-6
@@ -30,7 +30,7 @@ def robot():
 
 @pytest.fixture
 def world():
-    world = BallOnTrayWorld()
+    world = BulletWorld()
     yield world
     world.close()
 

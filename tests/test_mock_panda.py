@@ -8,7 +8,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 from ppo_agent_node.graph_plant import GraphPlant
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
 from shared_control.robot.limits import JOINT_NAMES, Q_MAX, Q_MIN, QD_MAX, TORQUE_MAX
 from shared_control.robot.posture import Q_REFERENCE
@@ -46,7 +46,7 @@ class Robot:
         self._nodes = [start_node('torque_ctrl_node', **controller),
                        start_node(package, name='some_robot', **parameters)]
         self._background = Background(observer.node)
-        self.env = BalanceEnv(GraphPlant(observer.node, self._background, observer.take_all))
+        self.env = SharedControlEnv(GraphPlant(observer.node, self._background, observer.take_all))
         self.env.plant.wait_until_up()
 
     def balance(self, steps):

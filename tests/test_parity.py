@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from ppo_agent_node.graph_plant import GraphPlant
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.rates import TICKS_PER_ACTION
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
@@ -22,19 +22,19 @@ def actions():
 
 def moments():
     """Those of the person: abrupt ones, N m."""
-    return 2.4 * np.random.default_rng(SEED).choice([-1.0, 0.0, 1.0], STEPS)
+    return 2.4 * np.random.default_rng(SEED).choice([-1.0, 0.0, 1.0], (STEPS, 1))
 
 
 class Script:
-    """A person who gives the moment ``m_y``, N m, at every policy tick."""
+    """A person who gives a moment, (1,), N m, at every policy tick."""
 
-    m_y = 0.0
+    held = np.zeros(1)
 
     def reset(self, seed):
         pass
 
     def moment(self, state):
-        return self.m_y
+        return self.held
 
 
 @pytest.fixture
@@ -45,7 +45,7 @@ def person():
 @pytest.fixture
 def local(person):
     """The in-process environment, and a list of (q, qd, effort) that grows with every tick."""
-    plant, ticks = LocalPlant(person), []
+    plant, ticks = LocalPlant(person=person), []
     step = plant.world.step
 
     def recorded_step(torque):
@@ -54,7 +54,7 @@ def local(person):
         step(torque)
 
     plant.world.step = recorded_step
-    env = BalanceEnv(plant)
+    env = SharedControlEnv(plant)
     yield env, ticks
     env.close()
 
@@ -72,12 +72,12 @@ def graph(start_node, observer, person):
         """The person answers every observation, as the agent does."""
         observer.take_all()
         set_ns(wrench.header.stamp, plant._stamp_ns)
-        set_moment(wrench, person.m_y)
+        set_moment(wrench, person.held)
         publisher.publish(wrench)
 
     plant = GraphPlant(observer.node, background, attend)
     plant.wait_until_up()
-    env = BalanceEnv(plant)
+    env = SharedControlEnv(plant)
     yield env, states
     env.close()
     background.close()
@@ -91,11 +91,11 @@ def test_an_episode_on_the_graph_equals_one_in_process(local, graph, observer, p
         for env, rows in ((local_env, local_rows), (graph_env, graph_rows)):
             rows.append(env.reset(seed=episode_seed)[0])
         first_stamp = graph_env.plant._stamp_ns
-        for action, person.m_y in list(zip(actions(), moments(), strict=True))[:steps]:
+        for action, person.held in list(zip(actions(), moments(), strict=True))[:steps]:
             for env, rows in ((local_env, local_rows), (graph_env, graph_rows)):
                 observation, reward, terminated, truncated, info = env.step(np.array([action], np.float32))
-                rows.append([*observation, reward, terminated, truncated, info['m_y_human'],
-                             info['m_y_applied'], *info['reward_terms'].values()])
+                rows.append([*observation, reward, terminated, truncated, *info['human'], *info['agent'],
+                             *info['applied'], *info['reward_terms'].values()])
             if terminated:
                 break
         assert not terminated, 'the test wants a whole episode'

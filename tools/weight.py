@@ -7,6 +7,7 @@ heavy came along or when the controller does not answer.
 
 import argparse
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -28,9 +29,14 @@ print(json.dumps({
 
 def install(folder: Path) -> Path:
     """An environment in ``folder`` with the controller and nothing else; its interpreter."""
-    venv.create(folder, with_pip=True)
-    python = folder / 'bin' / 'python'
-    subprocess.run([python, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', f'{ROOT}[ros]'],
+    venv.create(folder / 'venv', with_pip=True)
+    python = folder / 'venv' / 'bin' / 'python'
+    sources = folder / 'sources'  # a copy, since a build leaves files beside what it builds
+    for part in ('setup.py', 'pyproject.toml', 'requirements.txt', 'README.md', 'LICENSE', 'ros2_ws/src'):
+        copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy
+        (sources / part).parent.mkdir(parents=True, exist_ok=True)
+        copy(ROOT / part, sources / part)
+    subprocess.run([python, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', f'{sources}[ros]'],
                    check=True)
     subprocess.run([python, '-m', 'pip', 'uninstall', '--quiet', '--yes', 'setuptools', 'pip'], check=True)
     return python

@@ -18,5 +18,8 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='The core of shared-control training without ROS: robot model, controller, tasks, people who teach.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['shared-control = shared_control.cli:main']},
+    entry_points={
+        'console_scripts': ['shared-control = shared_control.cli:main'],
+        'shared_control.tasks': ['balance = shared_control.tasks.balance:Balance'],
+    },
 )

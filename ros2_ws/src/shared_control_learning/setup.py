@@ -12,7 +12,7 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_sim', 'numpy', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
-        'tensorboard', 'tqdm',
+        'pydantic', 'tensorboard', 'tqdm',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
@@ -21,8 +21,11 @@ setup(
     description='Learning from people and rewards: PPO, corrections, policy files, training, tests of a policy.',
     license='Apache-2.0',
     entry_points={
-        'shared_control.commands': [
-            'train = shared_control_learning.train_command:add_command',
+        'shared_control.commands': ['train = shared_control_learning.train_command:add_command'],
+        'shared_control.learners': [
+            'coached = shared_control_learning.presets:COACHED',
+            'thesis = shared_control_learning.presets:THESIS_PPO',
+            'autonomous = shared_control_learning.presets:AUTONOMOUS',
         ],
     },
 )

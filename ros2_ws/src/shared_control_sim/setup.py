@@ -19,4 +19,5 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='Simulated physics of the shared-control trainer: PyBullet worlds and the plant in this process.',
     license='Apache-2.0',
+    entry_points={'shared_control.worlds': ['bullet = shared_control_sim.bullet:BulletWorld']},
 )

@@ -13,8 +13,8 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.tasks.balance.scene import Ball
-from shared_control.tasks.balance.task import BallStarts
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import BallStarts
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
@@ -23,7 +23,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
 from std_srvs.srv import SetBool, Trigger
 
@@ -51,7 +51,7 @@ class MockPandaNode:
         seed = declare(
             node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
-        self._starts = BallStarts(seed)
+        self._starts = BallStarts(BALANCE, seed)
         follow_seed(node, self._starts)
         pace = declare(
             node, 'pace', 1.0, "Of the robot's clock against the wall clock. Below 1, for a machine that is too slow "
@@ -60,7 +60,7 @@ class MockPandaNode:
         self._has_clock = pace < 1.0
 
         self._random = np.random.default_rng(seed)
-        world = BallOnTrayWorld(Ball(), CONTROL_PERIOD)
+        world = BulletWorld(BALANCE.scene, CONTROL_PERIOD)
         world.reset(self._starts.next())
         self._robot = EffortPanda(world, timeout, limit_rate)
         self._states = StatePublisher(node, world, with_clock=self._has_clock)
@@ -129,10 +129,10 @@ class MockPandaNode:
         return response
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        ball_x = self._starts.next()
-        self._robot.reset(ball_x)
+        ball = self._starts.next()
+        self._robot.reset(ball)
         response.success = True
-        response.message = f'arm put back, ball dropped at x = {ball_x:.4f} m'
+        response.message = f'arm put back, ball dropped at x = {ball[0]:.4f} m'
         return response
 
     def _on_pause(self, _: SetBool.Request, response: SetBool.Response) -> SetBool.Response:

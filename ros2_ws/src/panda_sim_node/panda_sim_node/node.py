@@ -7,12 +7,14 @@ simulator/set_parameters (SetParameters: seed).
 
 import gc
 import time
+from dataclasses import replace
 
 import numpy as np
 from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.tasks.balance.scene import Ball
-from shared_control.tasks.balance.task import BallStarts
+from shared_control.scene import Ball
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import BallStarts
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
@@ -21,7 +23,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.bullet import BulletWorld
 from std_srvs.srv import SetBool, Trigger
 
 from .tick_times import TickTimes
@@ -47,7 +49,7 @@ class PandaSimNode:
         seed = declare(
             node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
-        self._starts = BallStarts(seed)
+        self._starts = BallStarts(BALANCE, seed)
         follow_seed(node, self._starts)
         timeout = declare(
             node, 'command_timeout', 0.1, 'free_running: without a torque for this long the joints brake.',
@@ -58,7 +60,7 @@ class PandaSimNode:
                 node, 'ball_radius', Ball.radius, 'Radius of the ball.', unit='m', minimum=0.005, maximum=0.05))
 
         self._advance = self._advance_lockstep if mode == 'lockstep' else self._advance_free
-        self._world = BallOnTrayWorld(ball, CONTROL_PERIOD)
+        self._world = BulletWorld(replace(BALANCE.scene, ball=ball), CONTROL_PERIOD)
         self._world.reset(self._starts.next())
         self._states = StatePublisher(node, self._world)
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)
@@ -182,11 +184,11 @@ class PandaSimNode:
     # -- services ---------------------------------------------------------------------------------------------------
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        ball_x = self._starts.next()
-        self._world.reset(ball_x)
+        ball = self._starts.next()
+        self._world.reset(ball)
         self._command = None
         response.success = True
-        response.message = f'ball dropped at x = {ball_x:.4f} m'
+        response.message = f'ball dropped at x = {ball[0]:.4f} m'
         return response
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:

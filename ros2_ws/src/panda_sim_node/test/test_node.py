@@ -7,7 +7,8 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
-from shared_control.tasks.balance.task import BallStarts
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import BallStarts
 from shared_control_ros import contract
 from shared_control_ros.stamps import to_ns
 from std_msgs.msg import Float64MultiArray
@@ -63,7 +64,7 @@ class TestLockstepWithController:
         balls.clear()
         pause(observer, False)
         observer.spin(lambda: balls)
-        assert balls[0].pose.pose.position.x == BallStarts(7).next()
+        assert balls[0].pose.pose.position.x == BallStarts(BALANCE, 7).next()[0]
         assert balls[0].pose.pose.position.z == 0.94
         assert stamps_ms(balls)[0] % 20 == 0
         observer.spin(lambda: len(states) > count + 50)

@@ -1,5 +1,6 @@
 """A moment that counted, as the controller publishes it."""
 
+import numpy as np
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from shared_control_ros.contract import Topic
@@ -29,18 +30,18 @@ class AppliedMoment:
         """Forget everything, what waits included."""
         self._input.clear()
         self._next: WrenchStamped | None = None
-        self._m_y = 0.0
+        self._moment = np.zeros(1)
 
-    def before(self, stamp_ns: int) -> float:
-        """The newest moment stamped before ``stamp_ns``, N m. Stamps must not run backwards."""
+    def before(self, stamp_ns: int) -> np.ndarray:
+        """The newest moment stamped before ``stamp_ns``, (1,), N m. Stamps must not run backwards."""
         while (wrench := self._next or self._input.take()) is not None:
             if to_ns(wrench.header.stamp) >= stamp_ns:
                 break
             self._next = None
             try:
-                self._m_y = moment_of(wrench)
+                self._moment = moment_of(wrench)
             except ValueError as error:
                 self._node.get_logger().error(
                     f'dropped a message on {self._input.topic_name}: {error}', throttle_duration_sec=1.0)
         self._next = wrench
-        return self._m_y
+        return self._moment

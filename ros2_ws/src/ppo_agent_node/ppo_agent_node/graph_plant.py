@@ -50,8 +50,8 @@ class GraphPlant:
         self._balls = Polled(node, contract.BALL, depth=contract.BALL.qos.depth)
         self._joints = Polled(
             node, contract.JOINT_STATES_THROTTLE, depth=contract.JOINT_STATES_THROTTLE.qos.depth, raw=True)
-        self._human = AppliedMoment(node, contract.HUMAN_APPLIED)
-        self._applied = AppliedMoment(node, contract.APPLIED_WRENCH)
+        self._moments = [AppliedMoment(node, topic) for topic in (
+            contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.APPLIED_WRENCH)]
         self._publisher = node.create_publisher(
             contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)
         self._wrench = base_wrench()
@@ -62,7 +62,7 @@ class GraphPlant:
 
     def wait_until_up(self) -> None:
         """Wait until the simulator and the controller are there."""
-        while not (self._simulator.is_there() and self._applied.publisher_count()):
+        while not (self._simulator.is_there() and self._moments[0].publisher_count()):
             self._node.get_logger().info(
                 'waiting for the simulator and the controller', throttle_duration_sec=5.0)
             time.sleep(0.1)
@@ -74,16 +74,16 @@ class GraphPlant:
         self._simulator.reset(seed, self._attend)
         for queue in (self._balls, self._joints):
             queue.clear()
-        self._human.clear()
-        self._applied.clear()
+        for moment in self._moments:
+            moment.clear()
         self._last_number = 0
         self._simulator.pause(False, self._attend)
         ball = self._next_ball()
         return self._read(ball)
 
-    def advance(self, m_y_agent: float) -> PlantState:
+    def advance(self, agent: np.ndarray) -> PlantState:
         """See :meth:`Plant.advance`."""
-        self._publish(m_y_agent)
+        self._publish(agent)
         ball = self._next_ball()
         step_ns = to_ns(ball.header.stamp) - self._stamp_ns
         if not 0 < step_ns <= GAP_NS:
@@ -101,13 +101,13 @@ class GraphPlant:
         while (ball := self._balls.take()) is not None:
             self._stamp_ns = to_ns(ball.header.stamp)
         if self._stamp_ns:
-            self._publish(0.0)
+            self._publish(np.zeros(1))
         self._attend()
 
-    def _publish(self, m_y_agent: float) -> None:
-        """M_yai, N m, as the answer to the last observation."""
+    def _publish(self, agent: np.ndarray) -> None:
+        """The agent's moment, (1,), N m, as the answer to the last observation."""
         set_ns(self._wrench.header.stamp, self._stamp_ns)
-        set_moment(self._wrench, m_y_agent)
+        set_moment(self._wrench, agent)
         self._publisher.publish(self._wrench)
 
     def _next_ball(self) -> Odometry:
@@ -151,8 +151,7 @@ class GraphPlant:
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
         return PlantState(
             self._joints_at(self._stamp_ns), (position.x, position.y, position.z),
-            (velocity.x, velocity.y, velocity.z), self._human.before(self._stamp_ns),
-            self._applied.before(self._stamp_ns))
+            (velocity.x, velocity.y, velocity.z), *(moment.before(self._stamp_ns) for moment in self._moments))
 
     def _joints_at(self, stamp_ns: int) -> np.ndarray:
         """Joint positions at a tick, (7,), rad."""
@@ -171,5 +170,5 @@ class GraphPlant:
     def close(self) -> None:
         """Leave no moment behind."""
         if self._stamp_ns:
-            self._publish(0.0)
+            self._publish(np.zeros(1))
             self._publisher.wait_for_all_acked(Duration(nanoseconds=200_000_000))

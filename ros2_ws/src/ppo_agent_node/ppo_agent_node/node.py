@@ -1,27 +1,31 @@
 """PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
 
-Takes /ball, /joint_states_throttle, /human/applied_wrench and /target_wrench, publishes /agent/target_wrench and
-/training/*, pauses and resets the simulator between episodes. Services (Trigger): learner/start: end the practice;
-learner/repeat: start the episode over; learner/finish: end the teaching after this episode.
+Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench and /target_wrench, publishes
+/agent/target_wrench and /training/*, pauses and resets the simulator between episodes. Services (Trigger):
+learner/start: end the practice; learner/repeat: start the episode over; learner/finish: end the teaching after this
+episode.
 """
 
 import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from rclpy.node import Node
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
+from shared_control.plugins import LEARNERS, names
 from shared_control.rates import POLICY_PERIOD
-from shared_control.tasks.balance.settings import DEFAULT_TASK
-from shared_control_learning.callbacks import Hooks
-from shared_control_learning.episode_ppo import EpisodePPO
+from shared_control.tasks.balance import BALANCE
+from shared_control_learning.callbacks import Callbacks
+from shared_control_learning.episode import Episode
 from shared_control_learning.episode_table import TABLE_NAME, EpisodeTable
-from shared_control_learning.evaluation.evaluate import TEST_SECONDS, evaluate, test_settings
-from shared_control_learning.learn import learn, make_learner, warm_up
+from shared_control_learning.evaluation.evaluate import as_tested, evaluate
+from shared_control_learning.learn import learn
+from shared_control_learning.learner import Learner
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
-from shared_control_learning.presets import PRESETS, preset
-from shared_control_learning.record import EpisodeRecord
+from shared_control_learning.presets import preset
+from shared_control_learning.warm_up import warm_up
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -40,7 +44,7 @@ class _Stopped(Exception):
     """The node was told to stop in mid-episode."""
 
 
-class PpoAgentNode(Hooks):
+class PpoAgentNode(Callbacks):
     """See the module."""
 
     def __init__(self) -> None:
@@ -48,13 +52,13 @@ class PpoAgentNode(Hooks):
         mode = declare(
             node, 'mode', 'teach', 'teach: learn, then test. test: only test a policy.', choices=('teach', 'test'))
         preset_name = declare(
-            node, 'preset', 'coached', 'What is learned and how (mode teach).', choices=tuple(PRESETS))
+            node, 'preset', 'coached', 'What is learned and how (mode teach).', choices=names(LEARNERS))
         seed = declare(node, 'seed', 0, 'Of weights, exploration and ball starts.', minimum=0, maximum=2**31 - 1)
         self._episodes = declare(
             node, 'episodes', 0, 'Teach until this many, those of an earlier run included; 0: until '
             'learner/finish is called or the time is up.', minimum=0, maximum=100_000)
         self._episode_seconds = declare(
-            node, 'episode_seconds', DEFAULT_TASK.episode_seconds, 'The longest an episode of teaching lasts.',
+            node, 'episode_seconds', BALANCE.episode_seconds, 'The longest an episode of teaching lasts.',
             unit='s', minimum=1.0, maximum=600.0)
         minutes = declare(
             node, 'max_minutes', 45.0, 'Teach for this long at the most.', unit='min', minimum=0.1, maximum=1440.0)
@@ -79,7 +83,7 @@ class PpoAgentNode(Hooks):
             if not self._test_episodes:
                 raise ParameterError("parameter 'test_episodes' must be at least 1 in mode 'test'")
             self._learner = _load(Path(policy), 'policy')
-        warm_up(self._learner.preset)
+        warm_up(replace(preset(self._learner.name), task=self._learner.task))
         self._seconds_left = minutes * 60.0
         self._finish = False
         self._repeat = False
@@ -92,19 +96,19 @@ class PpoAgentNode(Hooks):
         node.create_service(Trigger, contract.REPEAT_SERVICE, self._on_repeat)
         node.create_service(Trigger, contract.FINISH_SERVICE, self._on_finish)
 
-    def _make_learner(self, preset_name: str, seed: int, output: str, resume: bool) -> EpisodePPO:
+    def _make_learner(self, preset_name: str, seed: int, output: str, resume: bool) -> Learner:
         """A new learner, or the one in the output folder."""
-        learner = make_learner(preset(preset_name), seed)
+        learner = preset(preset_name).make(seed)
         if output:
             folder = Path(output)
             folder.mkdir(parents=True, exist_ok=True)
             self._policy_path = folder / POLICY_NAME
             if self._policy_path.exists():
                 learner = _load(self._policy_path, 'output')
-                if learner.preset.name != preset_name:
+                if learner.name != preset_name:
                     raise ParameterError(
                         f"parameter 'preset' is {preset_name!r}, but {self._policy_path} was learned with "
-                        f'{learner.preset.name!r}: name that one, or another output folder')
+                        f'{learner.name!r}: name that one, or another output folder')
                 self.node.get_logger().info(
                     f'going on after episode {learner.episode} of {self._policy_path} (seed {learner.seed})')
             self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)
@@ -121,8 +125,8 @@ class PpoAgentNode(Hooks):
             self._wait()
             if self._teaches:
                 self._practise()
-                task = replace(self._learner.preset.task, episode_seconds=self._episode_seconds)
-                learn(self._learner, BalanceEnv(self._plant, task), self._episodes or None, self)
+                task = replace(self._learner.task, episode_seconds=self._episode_seconds)
+                learn(self._learner, SharedControlEnv(self._plant, task), self._episodes or None, self)
             if self._test_episodes:
                 self._test()
             self._training.enter('done')
@@ -135,20 +139,22 @@ class PpoAgentNode(Hooks):
 
     def _practise(self) -> None:
         """The person alone moves the tray; a ball that falls is dropped anew."""
-        task = self._learner.preset.task
+        env = SharedControlEnv(self._plant, self._learner.task, human_only=True)
+        hands_off = np.zeros(len(env.task.axes), np.float32)
         self._practises = self._practises and not self._learner.episode
         while self._practises and not self._finish:
             self._training.enter('practice')
             try:
-                state = self._plant.reset(None)
-                while self._practises and not self._finish and state.ball_position[2] > task.fallen_below:
-                    state = self._plant.advance(0.0)
+                env.reset()
+                failed = False
+                while self._practises and not self._finish and not failed:
+                    failed = env.step(hands_off)[-1]['failed']
             except PlantInterrupted as error:
                 self.interrupted(error)
 
     def _test(self) -> None:
-        env = BalanceEnv(self._plant, test_settings(self._learner.preset.task))
-        evaluation = evaluate(self._learner.act, env, self._test_episodes, hooks=self)
+        env = SharedControlEnv(self._plant, as_tested(self._learner.task))
+        evaluation = evaluate(self._learner.act, env, self._test_episodes, callbacks=self)
         self._training.success(evaluation.success_rate)
         self.node.get_logger().info(
             f'alone: {evaluation.successes} of {self._test_episodes} episodes succeeded; over their last 3 s mean '
@@ -182,54 +188,54 @@ class PpoAgentNode(Hooks):
             'the teaching ends with this episode' if self._teaches else 'nothing is taught: the mode is test')
         return response
 
-    # -- hooks of learning and testing -------------------------------------------------------------------------------
+    # -- callbacks of learning and testing ---------------------------------------------------------------------------
 
-    def stop(self) -> bool:
-        """See :class:`Hooks`."""
+    def should_stop(self) -> bool:
+        """See :class:`Callbacks`."""
         self._attend()
         return self._finish or self._seconds_left <= 0.0
 
-    def episode_started(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
+    def episode_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
         self._started = time.monotonic()
         self._repeat = False
         self._diagnostics.skip()
-        self._training.enter(record.phase)
-        self._training.episode(record.episode)
+        self._training.enter(episode.phase)
+        self._training.episode(episode.number)
 
-    def stepped(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
+    def stepped(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
         if self._repeat:
             raise PlantInterrupted('the person starts it over')
         self._diagnostics.tick()
-        if record.steps % STEPS_PER_PROGRESS == 0:
-            length = self._episode_seconds if record.phase == 'teach' else TEST_SECONDS
-            self._training.progress(length - record.steps * POLICY_PERIOD, record.human_share)
+        if len(episode) % STEPS_PER_PROGRESS == 0:
+            length = self._episode_seconds if episode.phase == 'teach' else self._learner.task.test_seconds
+            self._training.progress(length - len(episode) * POLICY_PERIOD, episode.human_share)
 
-    def learning_started(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
-        self._training.episode_return(record.episode_return)
+    def learning_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._training.episode_return(episode.episode_return)
         self._training.enter('learn')
         self._plant.rest()
 
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
+    def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
+        """See :class:`Callbacks`."""
         if self._table is not None and self._policy_path is not None:
-            self._table.append(record)  # before the learner: a row too many is dropped on resuming
+            self._table.append(episode)  # before the learner: a row too many is dropped on resuming
             save_policy(self._learner, self._policy_path)
         self._seconds_left -= time.monotonic() - self._started
         self.node.get_logger().info(
-            f'episode {record.episode}: return {record.episode_return:.1f}, human share {record.human_share:.0%}, '
-            f'learned in {record.learn_seconds:.2f} s')
+            f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '
+            f'learned in {episode.learn_seconds:.2f} s')
 
-    def episode_tested(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
-        self._training.episode_return(record.episode_return)
+    def episode_tested(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._training.episode_return(episode.episode_return)
         if self._table is not None:
-            self._table.append(record)
+            self._table.append(episode)
 
     def interrupted(self, error: PlantInterrupted) -> None:
-        """See :class:`Hooks`."""
+        """See :class:`Callbacks`."""
         self.node.get_logger().warning(f'the episode is void: {error}')
         self._wait()
 
@@ -240,7 +246,7 @@ class PpoAgentNode(Hooks):
         self._background.close()
 
 
-def _load(path: Path, parameter: str) -> EpisodePPO:
+def _load(path: Path, parameter: str) -> Learner:
     try:
         return load_policy(path)
     except PolicyFileError as error:

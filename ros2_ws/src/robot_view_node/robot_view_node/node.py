@@ -15,7 +15,7 @@ from rclpy.publisher import Publisher
 from shared_control.control.moments import MomentSource
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import PandaModel
-from shared_control.tasks.balance.scene import Ball
+from shared_control.scene import Ball
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -57,7 +57,7 @@ class RobotViewNode:
         self._boxes = tray_boxes()
         self._balls = Polled(node, contract.BALL)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
-        self._wrenches = {source: (Polled(node, topic), MomentSource()) for source, topic in WRENCHES.items()}
+        self._wrenches = {source: (Polled(node, topic), MomentSource(1)) for source, topic in WRENCHES.items()}
         self._markers = node.create_publisher(MARKERS.msg_type, MARKERS.name, MARKERS.qos)
         self._tf = self._tf_publisher()
         if self._with_arm:
@@ -125,8 +125,8 @@ class RobotViewNode:
         message = wrenches.take()
         if message is not None:
             with suppress(ValueError):
-                moment.m_y, moment.stamp_ns = moment_of(message), to_ns(message.header.stamp)
-        return moment.at(now_ns, STALE_AFTER)
+                moment.moment, moment.stamp_ns = moment_of(message), to_ns(message.header.stamp)
+        return float(moment.at(now_ns, STALE_AFTER)[0])
 
     def close(self) -> None:
         """Nothing to leave behind."""

@@ -3,6 +3,7 @@
 import itertools
 import sys
 import time
+from collections import deque
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -15,8 +16,9 @@ from shared_control_ros.parameters import ParameterError, declare
 from shared_control_ros.runner import Stop
 from shared_control_ros.runner import run as run_node
 
-from .bag_writer import BagWriter
-from .latched import last_sent
+from .bag.last_sent import last_sent
+from .bag.writer import BagWriter
+from .topic_info import message_type, qos_yaml
 
 POLL_PERIOD = 0.02
 """s. Taking what has come every 20 ms costs a fraction of waking up for every message."""
@@ -27,23 +29,37 @@ SERVICE_POLLS = 5
 class RecordedTopic:
     """One topic on its way into the bag."""
 
-    def __init__(self, node: Node, topic: Topic, subscription: Polled, bag: BagWriter):
+    def __init__(self, node: Node, topic: Topic):
         self._node = node
-        self._bag = bag
-        self._subscription = subscription
-        self.name = subscription.topic_name
+        self._topic = topic
+        self._subscription = Polled(node, topic, raw=True, qos_profile=QoSProfile(
+            depth=contract.RECORDER_DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
+        self._waiting: deque[tuple[bytes, dict]] = deque()
+        self.name = self._subscription.topic_name
         self.latched = topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
         self.recorded_until = 0
         """Messages sent up to this time, ns, are in the bag already."""
-        self._channel = bag.add_topic(self.name, topic.msg_type, topic.qos)
         self._sequence = 0
         self._gaps = 0
         self._publishers = 0
 
+    def collect(self) -> None:
+        """Take all messages that have come into memory, so that the middleware drops none."""
+        while (taken := self._subscription.take_with_info()) is not None:
+            self._waiting.append(taken)
+
+    def announce(self, bag: BagWriter) -> None:
+        """Say where to write."""
+        described = message_type(self._topic.msg_type)
+        self._bag = bag
+        self._channel = bag.add_topic(
+            self.name, described.name, described.definition, described.type_hash, qos_yaml(self._topic.qos))
+
     def drain(self) -> None:
         """Write all messages that have come."""
-        while (taken := self._subscription.take_with_info()) is not None:
-            data, info = taken
+        self.collect()
+        while self._waiting:
+            data, info = self._waiting.popleft()
             if info['source_timestamp'] <= self.recorded_until:
                 continue
             sequence = info['publication_sequence_number'] or 0
@@ -75,13 +91,13 @@ class SessionRecorder:
         self._flush_period: float = declare(
             self.node, 'flush_period', 0.25, 'At most this much is lost when the recorder is killed.',
             unit='s', minimum=0.05, maximum=0.5)
-        # Messages wait here while the bag is opened, which takes a while after a long recording was killed.
-        subscriptions = [self._subscribe(topic) for topic in contract.BAG_TOPICS]
-        self._bag = BagWriter(output)
+        self._topics = [RecordedTopic(self.node, topic) for topic in contract.BAG_TOPICS]
+        # After a long recording was killed, this takes a while. What comes meanwhile is recorded, too.
+        self._bag = BagWriter(output, meanwhile=self._collect)
         for recovered in self._bag.recovered:
             self.node.get_logger().warning(f'finished what a killed recorder left behind: {recovered}')
-        self._topics = [RecordedTopic(self.node, topic, subscription, self._bag)
-                        for topic, subscription in zip(contract.BAG_TOPICS, subscriptions, strict=True)]
+        for topic in self._topics:
+            topic.announce(self._bag)
         latched = {topic.name: topic for topic in self._topics if topic.latched}
         for name, sent in last_sent(self._bag.previous_files, latched).items():
             latched[name].recorded_until = sent
@@ -116,9 +132,9 @@ class SessionRecorder:
         self._bag.finish()
         self._background.close()
 
-    def _subscribe(self, topic: Topic) -> Polled:
-        return Polled(self.node, topic, raw=True, qos_profile=QoSProfile(
-            depth=contract.RECORDER_DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
+    def _collect(self) -> None:
+        for topic in self._topics:
+            topic.collect()
 
     def _drain(self) -> None:
         for topic in self._topics:

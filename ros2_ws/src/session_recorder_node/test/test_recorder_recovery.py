@@ -1,22 +1,28 @@
 """Unfinished files, cut anywhere."""
 
+import errno
+import os
+import subprocess
+import sys
+
 import pytest
 import yaml
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 from session_recorder_node import BagError, annotate, recover
-from session_recorder_node.bag_writer import BagWriter
-from session_recorder_node.latched import last_sent
-from shared_control_ros import contract
+from session_recorder_node.bag.last_sent import last_sent
+from session_recorder_node.bag.writer import BagWriter
 
 CHUNKS, PER_CHUNK = 3, 4
+HASH = 'RIHS01_' + 64 * '0'
+QOS = '[]'
 
 
 def record(bag, finish=True):
     """A file of three chunks of four messages on two topics; an unfinished one has its file closed all the same."""
     writer = BagWriter(bag)
-    channels = [writer.add_topic(f'/{topic.name}', topic.msg_type, topic.qos)
-                for topic in (contract.JOINT_STATES, contract.EPISODE)]
+    channels = [writer.add_topic(name, type_name, f'{field} data\n', HASH, QOS) for name, type_name, field in (
+        ('/joint_states', 'std_msgs/msg/Float64', 'float64'), ('/training/episode', 'std_msgs/msg/Int32', 'int32'))]
     ends = [writer.path.stat().st_size]
     for chunk in range(CHUNKS):
         for message in range(PER_CHUNK):
@@ -74,6 +80,13 @@ def test_a_recovery_that_is_cut_short_can_be_repeated(tmp_path):
         assert path.read_bytes() == whole
 
 
+def test_something_else_can_be_done_after_every_chunk(tmp_path):
+    record(tmp_path / 'bag', finish=False)
+    done = []
+    recover(tmp_path / 'bag', meanwhile=lambda: done.append(1))
+    assert len(done) == CHUNKS
+
+
 def test_a_spoilt_last_chunk_is_dropped(tmp_path):
     path, ends = record(tmp_path / 'bag', finish=False)
     content = bytearray(path.read_bytes())
@@ -82,6 +95,16 @@ def test_a_spoilt_last_chunk_is_dropped(tmp_path):
     [recovered] = recover(tmp_path / 'bag')
     assert recovered.messages == (CHUNKS - 1) * PER_CHUNK
     assert len(messages(path)) == recovered.messages
+
+
+def test_a_file_that_is_spoilt_before_its_end_is_left_as_it_is(tmp_path):
+    path, ends = record(tmp_path / 'bag', finish=False)
+    content = bytearray(path.read_bytes())
+    content[ends[1] + 80:ends[1] + 90] = bytes(10)
+    path.write_bytes(content)
+    with pytest.raises(BagError, match='is damaged before its end'):
+        recover(tmp_path / 'bag')
+    assert path.read_bytes() == content
 
 
 def test_zeros_that_a_power_cut_leaves_are_cut_off(tmp_path):
@@ -137,6 +160,11 @@ def test_a_bag_that_is_being_recorded_is_not_touched(tmp_path):
     assert recover(tmp_path / 'bag') == []
 
 
+def test_a_bag_needs_no_ros():
+    used = 'import sys, session_recorder_node.bag.writer, session_recorder_node.bag.last_sent'
+    subprocess.run([sys.executable, '-c', f'{used}; assert "rclpy" not in sys.modules'], check=True)
+
+
 def test_the_newest_message_of_a_latched_topic_is_found(tmp_path):
     path, _ = record(tmp_path / 'bag')
     newest = CHUNKS * PER_CHUNK - 1
@@ -154,6 +182,55 @@ def test_an_annotation_stands_in_the_file_and_a_torn_one_costs_no_message(tmp_pa
     assert messages(path) == before
     with Reader(tmp_path / 'bag') as reader:
         assert reader.message_count == CHUNKS * PER_CHUNK
-    path.write_bytes(path.read_bytes()[:-100])
+
+    annotated = path.read_bytes()
+    path.write_bytes(annotated[:-100])  # the index alone is torn
+    recover(tmp_path / 'bag')
+    assert path.read_bytes() == annotated
+    path.write_bytes(annotated[:annotated.index(b'new')])
     recover(tmp_path / 'bag')
     assert path.read_bytes() == plain
+
+
+def test_a_damaged_file_is_not_annotated(tmp_path):
+    path, ends = record(tmp_path / 'bag')
+    content = bytearray(path.read_bytes())
+    content[ends[-2] + 80:ends[-2] + 90] = bytes(10)
+    path.write_bytes(content)
+    with pytest.raises(BagError, match='only 8 of 12 messages can be read'):
+        annotate(tmp_path / 'bag', 'note', {'key': 'value'})
+    assert path.read_bytes() == content
+
+
+def test_an_annotation_leaves_those_of_other_names(tmp_path):
+    path, _ = record(tmp_path / 'bag')
+    for name in ('one', 'two', 'one'):
+        annotate(tmp_path / 'bag', name, {'of': name})
+    with path.open('rb') as file:
+        assert [record.name for record in make_reader(file).iter_metadata()] == ['rosbag2', 'two', 'one']
+
+
+def test_a_bag_without_a_message_can_be_annotated(tmp_path):
+    writer = BagWriter(tmp_path / 'bag')
+    writer.finish()
+    annotate(tmp_path / 'bag', 'note', {'key': 'value'})
+    with writer.path.open('rb') as file:
+        assert [record.name for record in make_reader(file).iter_metadata()] == ['rosbag2', 'note']
+
+
+@pytest.mark.parametrize('change', [recover, lambda bag: annotate(bag, 'note', {})])
+def test_a_copy_that_fails_leaves_the_file_as_it_was(tmp_path, monkeypatch, change):
+    path, _ = record(tmp_path / 'bag', finish=change is not recover)
+    before = path.read_bytes()
+
+    def no_room(_):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, 'fsync', no_room)
+        with pytest.raises(OSError, match='No space left'):
+            change(tmp_path / 'bag')
+    assert path.read_bytes() == before
+    assert not list((tmp_path / 'bag').glob('*.tmp'))
+    change(tmp_path / 'bag')
+    assert len(messages(path)) == CHUNKS * PER_CHUNK

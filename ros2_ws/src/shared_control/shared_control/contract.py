@@ -74,7 +74,7 @@ HUMAN_APPLIED = Topic(
     'human/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent', 'with `/target_wrench`',
     "M_yh as it counted in the sum, N m: the person's part, faded when stale, before the sum is clamped")
 AGENT_APPLIED = Topic(
-    'agent/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', '', 'with `/target_wrench`',
+    'agent/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent', 'with `/target_wrench`',
     "M_yai as it counted in the sum, N m: the agent's part, likewise")
 BALL = Topic(
     'ball', 'nav_msgs/msg/Odometry', 100, 'robot', 'agent, tutor, screens, views', '100 Hz',

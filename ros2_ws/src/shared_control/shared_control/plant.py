@@ -16,10 +16,12 @@ class PlantState:
     """(3,), m"""
     ball_velocity: tuple[float, ...]
     """(3,), m/s"""
-    m_y_human: float
-    """M_yh over the period that ended here, N m"""
-    m_y_applied: float
-    """M_y over the period that ended here, N m"""
+    human: np.ndarray
+    """The human's moment as it counted over the period that ended here, along the task's axes, (k,), N m"""
+    agent: np.ndarray
+    """The agent's, likewise"""
+    applied: np.ndarray
+    """Their sum as applied, likewise"""
 
 
 class PlantInterrupted(RuntimeError):
@@ -32,8 +34,8 @@ class Plant(Protocol):
     def reset(self, seed: int | None) -> PlantState:
         """Start an episode; a ``seed`` begins the sequence of ball starts anew."""
 
-    def advance(self, m_y_agent: float) -> PlantState:
-        """Apply M_yai (N m) for one policy period.
+    def advance(self, agent: np.ndarray) -> PlantState:
+        """Apply the agent's moment, (k,), N m, for one policy period.
 
         Raises:
             PlantInterrupted: the episode cannot go on.

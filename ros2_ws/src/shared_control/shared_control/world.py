@@ -8,6 +8,8 @@ import numpy as np
 class World(Protocol):
     """An arm that takes joint torques, a tray on its flange and a ball, one tick at a time.
 
+    Made from a :class:`Scene` and the length of a tick, s; found by name (entry point of ``shared_control.worlds``).
+
     An episode depends on nothing that came before it, and two worlds given the same torques from the same start go
     through the same states, bit for bit. Vectors are in the base frame, in SI units.
     """
@@ -17,8 +19,8 @@ class World(Protocol):
     effort: np.ndarray
     """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
 
-    def reset(self, ball_x: float) -> None:
-        """Arm at rest at the reference joints, ball at rest above the tray at ``ball_x``, m."""
+    def reset(self, ball: np.ndarray) -> None:
+        """Arm at rest at the reference joints, ball at rest at ``ball``, (3,), m."""
 
     def joint_state(self) -> tuple[np.ndarray, np.ndarray]:
         """Joint positions, rad, and velocities, rad/s, each (7,)."""

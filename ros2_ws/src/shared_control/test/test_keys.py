@@ -1,18 +1,33 @@
 """Keys to M_yh."""
 
 import pytest
-from shared_control.teaching.keys import Key, KeyMoment, KeyPresses
+from shared_control.keys import Key, KeyMoment, KeyPresses
 
 
 def test_each_press_is_five_newton_metres_and_space_is_zero():
     moment = KeyMoment()
     moment.press(Key.LEFT)
-    assert moment.m_y == 5.0
+    assert moment.moment.tolist() == [5.0]
     for _ in range(5):
         moment.press(Key.RIGHT)
-    assert moment.m_y == -10.0
+    assert moment.moment.tolist() == [-10.0]
     moment.press(Key.SPACE)
-    assert moment.m_y == 0.0
+    assert moment.moment.tolist() == [0.0]
+
+
+def test_keys_of_two_axes_move_each_its_own():
+    moment = KeyMoment({Key.LEFT: (1, 1.0), Key.RIGHT: (1, -1.0), Key.UP: (0, -1.0), Key.DOWN: (0, 1.0)})
+    for key in (Key.LEFT, Key.UP, Key.UP):
+        moment.press(key)
+    assert moment.moment.tolist() == [-10.0, 5.0]
+    moment.press(Key.SPACE)
+    assert moment.moment.tolist() == [0.0, 0.0]
+
+
+def test_a_key_that_moves_no_axis_does_nothing():
+    moment = KeyMoment()
+    moment.press(Key.UP)
+    assert moment.moment.tolist() == [0.0]
 
 
 def test_a_press_is_a_rising_edge():

@@ -1,5 +1,6 @@
 """What becomes of the moments before they reach the arm."""
 
+import numpy as np
 import pytest
 from shared_control.control.moments import FADE_TIME, MomentSource, freshness, sum_moments
 
@@ -17,16 +18,17 @@ def test_a_stamp_far_ahead_counts_nothing():
 
 
 def test_a_silent_source_ends_at_zero():
-    source = MomentSource(m_y=5.0, stamp_ns=1_000_000_000)
-    assert source.at(1_050_000_000, 0.1) == 5.0
-    assert 0.0 < source.at(1_150_000_000, 0.1) < 5.0
-    assert source.at(2_000_000_000, 0.1) == 0.0
-    assert source.at(950_000_000, 0.1) == 5.0
-    assert source.at(500_000_000, 0.1) == 0.0
+    source = MomentSource(2)
+    source.moment, source.stamp_ns = np.array([5.0, -2.0]), 1_000_000_000
+    np.testing.assert_array_equal(source.at(1_050_000_000, 0.1), [5.0, -2.0])
+    assert 0.0 < source.at(1_150_000_000, 0.1)[0] < 5.0
+    np.testing.assert_array_equal(source.at(2_000_000_000, 0.1), [0.0, 0.0])
+    np.testing.assert_array_equal(source.at(950_000_000, 0.1), [5.0, -2.0])
+    np.testing.assert_array_equal(source.at(500_000_000, 0.1), [0.0, 0.0])
     assert source.age(1_150_000_000) == pytest.approx(0.15) and source.age(500_000_000) == pytest.approx(-0.5)
 
 
-def test_the_sum_is_limited():
-    assert sum_moments(3.0, 5.0, 20.0) == 8.0
-    assert sum_moments(30.0, 5.0, 20.0) == 20.0
-    assert sum_moments(-30.0, 5.0, 20.0) == -20.0
+def test_the_sum_is_limited_about_each_axis():
+    limit = np.array([20.0, 10.0])
+    np.testing.assert_array_equal(sum_moments(np.array([3.0, -4.0]), np.array([5.0, 1.0]), limit), [8.0, -3.0])
+    np.testing.assert_array_equal(sum_moments(np.array([30.0, -9.0]), np.array([5.0, -9.0]), limit), [20.0, -10.0])

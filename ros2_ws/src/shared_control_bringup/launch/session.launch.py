@@ -12,6 +12,7 @@ from launch.conditions import IfCondition
 from launch.substitutions import EqualsSubstitution, IfElseSubstitution, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+from shared_control.plugins import LEARNERS, names
 from shared_control.teaching.profiles import PROFILES
 from shared_control_bringup.launching import (
     common_arguments,
@@ -22,12 +23,12 @@ from shared_control_bringup.launching import (
     view,
     view_argument,
 )
-from shared_control_learning.presets import PRESETS, preset
+from shared_control_learning.presets import preset
 
 
 def controller(context: LaunchContext, output: SomeSubstitutionsType) -> list[Node]:
     """The controller, with the limit of the task that the preset learns."""
-    limit = preset(LaunchConfiguration('preset').perform(context)).task.moment_limit
+    limit = preset(LaunchConfiguration('preset').perform(context)).task.limit.max()
     return [graph_node('torque_ctrl_node', parameters={'moment_limit': limit}, output=output)]
 
 
@@ -42,7 +43,7 @@ def generate_launch_description() -> LaunchDescription:
                               description='Who teaches: you, here or in a browser, a simulated tutor, or nobody.'),
         DeclareLaunchArgument('profile', default_value='expert', choices=list(PROFILES),
                               description='Of the simulated tutor.'),
-        DeclareLaunchArgument('preset', default_value='coached', choices=list(PRESETS),
+        DeclareLaunchArgument('preset', default_value='coached', choices=names(LEARNERS),
                               description='What is learned and how.'),
         DeclareLaunchArgument('episodes', default_value='0',
                               description='Teach this many, then test; 0: until somebody says that it has learned it.'),

@@ -3,36 +3,36 @@
 import json
 import sys
 
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
-from shared_control_learning.callbacks import Hooks
-from shared_control_learning.evaluation.evaluate import evaluate, test_settings
+from shared_control_learning.callbacks import Callbacks
+from shared_control_learning.episode import Episode
+from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.policy_file import load_policy, read_description
-from shared_control_learning.record import EpisodeRecord
 from shared_control_records.session.final_test import save_test
 from shared_control_records.session.folder import SessionFolder
 from shared_control_records.session.summary import Summary
 from shared_control_sim.local_plant import LocalPlant
 
 
-class _Progress(Hooks):
+class _Progress(Callbacks):
     """A bar on a terminal."""
 
     def __init__(self, episodes: int):
         self._episodes = episodes
 
-    def episode_tested(self, record: EpisodeRecord) -> None:
+    def episode_tested(self, episode: Episode) -> None:
         if sys.stdout.isatty():
-            bar = '#' * record.episode + '.' * (self._episodes - record.episode)
-            print(f'\rtesting the robot alone [{bar}]', end='' if record.episode < self._episodes else '\n', flush=True)
+            bar = '#' * episode.number + '.' * (self._episodes - episode.number)
+            print(f'\rtesting the robot alone [{bar}]', end='' if episode.number < self._episodes else '\n', flush=True)
 
 
 def test_policy(folder: SessionFolder, episodes: int) -> None:
     """Test the session's policy alone, in this process, which equals the graph (tests/test_parity.py)."""
     learner = load_policy(folder.policy)
-    env = BalanceEnv(LocalPlant(moment_limit=learner.preset.task.moment_limit), test_settings(learner.preset.task))
+    env = SharedControlEnv(LocalPlant(learner.task), as_tested(learner.task))
     try:
-        save_test(evaluate(learner.act, env, episodes, hooks=_Progress(episodes)), folder.test)
+        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(episodes)), folder.test)
     finally:
         env.close()
 

@@ -9,9 +9,10 @@ from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from session_recorder_node.recovery import annotate, recover
+from session_recorder_node import annotate, recover
+from shared_control.plugins import LEARNERS, names
 from shared_control.teaching.profiles import PROFILES
-from shared_control_learning.presets import PRESETS, preset
+from shared_control_learning.presets import preset
 from shared_control_records.session import bag_metadata as in_bag
 from shared_control_records.session.folder import SessionFolder
 from shared_control_ros.host_and_port import host_and_port
@@ -35,7 +36,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                         help='where the page of --tutor page is served; another host than loopback opens it to the '
                         'network, with a token')
     parser.add_argument('--profile', choices=tuple(PROFILES), default='expert', help='of the simulated tutor')
-    parser.add_argument('--preset', choices=tuple(PRESETS), default='coached', help='what is learned and how')
+    parser.add_argument('--preset', choices=names(LEARNERS), default='coached', help='what is learned and how')
     parser.add_argument('--episodes', type=int, default=0,
                         help='teach this many, then test; 0: until you say that it has learned it')
     parser.add_argument('--minutes', type=float, default=45.0, help='teach for this long at the most')
@@ -114,7 +115,7 @@ def _parameters(settings: dict[str, Any], folder: SessionFolder, shows_screen: b
         parameters.setdefault(node, {}).update(values)
 
     put('panda_sim_node', seed=settings['seed'])
-    put('torque_ctrl_node', moment_limit=preset(settings['preset']).task.moment_limit)
+    put('torque_ctrl_node', moment_limit=float(preset(settings['preset']).task.limit.max()))
     put('teleop_key_node', screen='auto' if shows_screen else 'off')
     put('ppo_agent_node', preset=settings['preset'], seed=settings['seed'], episodes=settings['episodes'],
         max_minutes=settings['minutes'], practice=settings['tutor'] == 'page', output=str(folder.learner))
@@ -129,15 +130,15 @@ def _parameters(settings: dict[str, Any], folder: SessionFolder, shows_screen: b
 
 def _teach(settings: dict[str, Any], folder: SessionFolder, shows_screen: bool) -> tuple[End, int]:
     """Run the graph until the agent is done or somebody stops it: how it ended, and restarts of nodes."""
-    names = ['session_recorder_node', 'torque_ctrl_node', 'panda_sim_node', 'teleop_key_node']
+    nodes_needed = ['session_recorder_node', 'torque_ctrl_node', 'panda_sim_node', 'teleop_key_node']
     if settings['tutor'].startswith('simulated'):
-        names.append('sim_tutor_node')
+        nodes_needed.append('sim_tutor_node')
     if settings['tutor'] == 'page':
-        names.append('teach_page_node')
-    names.append('ppo_agent_node')
+        nodes_needed.append('teach_page_node')
+    nodes_needed.append('ppo_agent_node')
     paced = ros_parameters.load(folder.parameters).get('panda_sim_node', {}).get('paced', True)
     nodes = [NodeProcess(name, folder.parameters, folder.logs / f'{name}.log', in_real_time=paced,
-                         in_foreground=shows_screen and name == 'teleop_key_node') for name in names]
+                         in_foreground=shows_screen and name == 'teleop_key_node') for name in nodes_needed]
     log = (folder.logs / 'session.log').open('a')
 
     def say(text: str) -> None:

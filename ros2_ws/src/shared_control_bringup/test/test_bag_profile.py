@@ -9,10 +9,10 @@ from mcap.reader import make_reader
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from session_recorder_node.bag_writer import BagWriter
+from session_recorder_node.bag.writer import BagWriter
 from shared_control.contract import RECORDER_DEPTH
 from shared_control.contract_tables import qos_overrides, record_arguments
-from shared_control_ros.contract import BAG_TOPICS, PHASE
+from shared_control_ros.contract import BAG_TOPICS
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -21,7 +21,8 @@ PACKAGE = Path(__file__).parents[1]
 def recorded(tmp_path):
     """A file that the recorder has written."""
     bag = BagWriter(tmp_path / 'bag')
-    bag.write(bag.add_topic('/training/phase', PHASE.msg_type, PHASE.qos), b'\0\1\0\0\1\0\0\0\0', 1, 2, 1)
+    channel = bag.add_topic('/training/phase', 'std_msgs/msg/String', 'string data\n', 'RIHS01_', '[]')
+    bag.write(channel, b'\0\1\0\0\1\0\0\0\0', 1, 2, 1)
     bag.finish()
     return tmp_path / 'bag' / 'bag_0.mcap'
 

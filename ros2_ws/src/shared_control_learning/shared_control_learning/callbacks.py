@@ -1,30 +1,30 @@
-"""What a learning or testing loop tells those who look on."""
+"""What a learning or testing loop reports while it runs."""
 
 from shared_control.plant import PlantInterrupted
 
-from .record import EpisodeRecord
+from .episode import Episode
 
 
-class Hooks:
-    """What learning and testing tell as they go on, and the one thing that they ask. Override what is of interest."""
+class Callbacks:
+    """What learning and testing report, and the one thing that they ask. Override what is of interest."""
 
-    def stop(self) -> bool:
-        """Asked before each episode of learning: whether to leave it at that."""
+    def should_stop(self) -> bool:
+        """Called before each episode of learning: whether to leave it at that."""
         return False
 
-    def episode_started(self, record: EpisodeRecord) -> None:
-        """The ball is about to be dropped; ``record`` fills up from now on."""
+    def episode_started(self, episode: Episode) -> None:
+        """The ball is about to be dropped; ``episode`` fills up from now on."""
 
-    def stepped(self, record: EpisodeRecord) -> None:
+    def stepped(self, episode: Episode) -> None:
         """One policy period has passed."""
 
-    def learning_started(self, record: EpisodeRecord) -> None:
+    def learning_started(self, episode: Episode) -> None:
         """The episode is over, the update begins: the time to let the arm rest."""
 
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """The update is done, the learner consistent: the time to save it."""
+    def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
+        """The update is done, the learner consistent: the time to save it. ``figures``: of the update, by name."""
 
-    def episode_tested(self, record: EpisodeRecord) -> None:
+    def episode_tested(self, episode: Episode) -> None:
         """An episode of a test is over."""
 
     def interrupted(self, error: PlantInterrupted) -> None:

@@ -5,9 +5,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 import torch
 from shared_control.rates import POLICY_PERIOD
+from shared_control.tasks.task import Task
 
 from .episode import Episode
-from .presets import CoachingSettings
+from .settings import CoachingSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,13 +16,22 @@ class Corrections:
     """Corrected states, and what the policy should have done there; a row each."""
 
     observations: torch.Tensor
-    """(n, 3), float32"""
+    """(rows, n), float32"""
     labels: torch.Tensor
-    """(n, 1), float32"""
+    """(rows, k), float32"""
     weights: torch.Tensor
-    """(n, 1), float32: the part of the delays with which the person held a moment."""
+    """(rows, 1), float32: the part of the delays with which the person held a moment."""
     episodes: torch.Tensor
-    """(n, 1), float32: in which episode, from 1."""
+    """(rows, 1), float32: in which episode, from 1."""
+
+    @classmethod
+    def none(cls, task: Task) -> 'Corrections':
+        """Not one."""
+        return cls(*(torch.zeros(0, columns) for columns in (task.observation_size, len(task.axes), 1, 1)))
+
+    def tensors(self) -> dict[str, torch.Tensor]:
+        """By name, for a policy file."""
+        return {f'corrections.{f.name}': getattr(self, f.name) for f in fields(self)}
 
     def __len__(self) -> int:
         return len(self.labels)
@@ -36,29 +46,25 @@ class Corrections:
         return Corrections(*(getattr(self, f.name)[kept] for f in fields(self)))
 
 
-NONE = Corrections(*(torch.zeros(0, columns) for columns in (3, 1, 1, 1)))
-
-
-def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching: CoachingSettings,
-                     action_scale: float) -> Corrections:
+def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching: CoachingSettings) -> Corrections:
     """The corrections of an episode.
 
     People react late, and some later than others: the moment held at t corrects what the policy did at t - d, for
-    all d in D alike. The label is the mean of ``clip(pi(s_{t-d}) + g M_yh(t) / M_max)`` over D, and it weighs as
-    much as the part of D with M_yh != 0.
+    all d in D alike. The label is the mean of ``clip(pi(s_{t-d}) + g M_h(t) / M_max)`` over D, and it weighs as
+    much as the part of D with a moment held.
 
     Args:
         number: of the episode, from 1.
-        means: what the policy does in the states of the episode without exploring, (steps, 1).
-        action_scale: M_max, N m.
+        means: what the policy does in the states of the episode without exploring, (steps, k).
     """
     steps = len(episode)
     later = [min(round(delay / POLICY_PERIOD), steps) for delay in coaching.delays]
-    held = np.array(episode.m_y_human, np.float32)
-    human = np.stack([np.append(held[d:], np.zeros(d, np.float32)) for d in later], axis=1)  # (steps, D)
+    held = np.array(episode.human, np.float32)
+    human = np.stack([np.append(held[d:], np.zeros_like(held[:d]), axis=0) for d in later], axis=1)  # (steps, D, k)
     human[steps - max(later):] = 0.0  # what people would have pressed after the end is not known
-    labels = np.clip(means + coaching.gain * human / action_scale, -1.0, 1.0).mean(axis=1, keepdims=True)
-    weights = (human != 0.0).mean(axis=1, keepdims=True)
+    scale = episode.task.scale.astype(np.float32)
+    labels = np.clip(means[:, np.newaxis] + coaching.gain * human / scale, -1.0, 1.0).mean(axis=1)
+    weights = (human != 0.0).any(axis=2).mean(axis=1, keepdims=True)
     corrected = np.flatnonzero(weights)
     return Corrections(*(torch.as_tensor(values[corrected].astype(np.float32)) for values in (
         np.array(episode.observations), labels, weights, np.full((steps, 1), number))))

@@ -1,37 +1,113 @@
-"""What happened in one episode, as the learner needs it."""
+"""One episode, taught or tested: what happened in it, step by step, and its figures."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from shared_control.rates import POLICY_PERIOD
+from shared_control.tasks.balance.task import settled
+from shared_control.tasks.task import Task
 
 
 @dataclass(eq=False)
 class Episode:
-    """The steps of an episode. The agent's action, the human's moment and the applied moment are kept apart."""
+    """The steps of an episode; what agent and human gave and what was applied are kept apart.
 
+    ``k`` is the number of the task's axes.
+    """
+
+    task: Task
+    number: int = 1
+    """From 1."""
+    phase: str = 'teach'
+    """``teach`` or ``test``"""
     observations: list[np.ndarray] = field(default_factory=list)
-    """Of each step, (3,), float32"""
+    """Of each step, (n,), float32"""
     actions: list[np.ndarray] = field(default_factory=list)
-    """As drawn, not clipped; of each step, (1,), float32"""
+    """As the learner drew them, not clipped; of each step, (k,), float32"""
     rewards: list[float] = field(default_factory=list)
     """As the learner sees them, scaled."""
-    m_y_human: list[float] = field(default_factory=list)
-    """M_yh of each step, N m"""
-    m_y_applied: list[float] = field(default_factory=list)
-    """M_y of each step, N m"""
+    human: list[np.ndarray] = field(default_factory=list)
+    """The human's moment of each step, (k,), N m"""
+    agent: list[np.ndarray] = field(default_factory=list)
+    """The agent's moment of each step, (k,), N m"""
+    applied: list[np.ndarray] = field(default_factory=list)
+    """The moment applied in each step, (k,), N m"""
+    position_error: list[float] = field(default_factory=list)
+    """Of each step, m (see ``TaskState``)"""
+    velocity: list[float] = field(default_factory=list)
+    """Of each step, m/s (see ``TaskState``)"""
+    reward_terms: dict[str, float] = field(default_factory=dict)
+    """Sums by name, unscaled."""
+    failed: bool = False
+    """It ended because the task failed (the ball fell); False when time was up."""
     last_observation: np.ndarray | None = None
     """Of the state after the last step."""
-    terminated: bool = False
-    """The ball fell; False when time was up."""
+    learn_seconds: float = 0.0
+    """Duration of the update after the episode, s."""
+
+    def __post_init__(self) -> None:
+        self.reward_terms = self.reward_terms or dict.fromkeys(self.task.reward_names, 0.0)
 
     def __len__(self) -> int:
         return len(self.rewards)
 
-    def add(self, observation: np.ndarray, action: np.ndarray, reward: float, m_y_human: float, m_y_applied: float,
-            ) -> None:
-        """One step: what was seen, what was done, and what came of it."""
+    def add(self, observation: np.ndarray, action: np.ndarray, reward: float, info: dict[str, Any]) -> None:
+        """One step: what was seen and done, and what ``SharedControlEnv.step`` gave for it."""
         self.observations.append(observation)
         self.actions.append(action)
         self.rewards.append(reward)
-        self.m_y_human.append(m_y_human)
-        self.m_y_applied.append(m_y_applied)
+        self.human.append(info['human'])
+        self.agent.append(info['agent'])
+        self.applied.append(info['applied'])
+        self.position_error.append(info['state'].position_error)
+        self.velocity.append(info['state'].velocity)
+        for name, value in info['reward_terms'].items():
+            self.reward_terms[name] += value
+        self.failed = info['failed']
+
+    @property
+    def success(self) -> bool:
+        """Whether the task was done, as the task judges an episode."""
+        return self.task.succeeded(np.array(self.position_error), np.array(self.velocity), self.failed)
+
+    @property
+    def episode_return(self) -> float:
+        """Sum of the reward, unscaled and not discounted."""
+        return sum(self.reward_terms.values())
+
+    @property
+    def human_share(self) -> float:
+        """Mean of |M_h| / (|M_h| + |M_a|), 0..1."""
+        human, agent = _magnitudes(self.human), _magnitudes(self.agent)
+        both = human + agent
+        return float(np.divide(human, both, out=np.zeros_like(both), where=both > 0.0).mean()) if len(self) else 0.0
+
+    @property
+    def intervention_rate(self) -> float:
+        """Part of the steps in which the human held a moment, 0..1."""
+        return float((_magnitudes(self.human) != 0.0).mean()) if len(self) else 0.0
+
+    def row(self) -> dict[str, float | int | str]:
+        """The figures by name, for a table. Moments of several axes count by their magnitude."""
+        human, agent = _signed(self.human), _signed(self.agent)
+        return {
+            'episode': self.number, 'phase': self.phase, 'steps': len(self),
+            'seconds': round(len(self) * POLICY_PERIOD, 3), 'return': self.episode_return, **self.reward_terms,
+            'fallen': int(self.failed), 'mean_abs_human': float(np.abs(human).mean()),
+            'mean_abs_agent': float(np.abs(agent).mean()),
+            'std_human': float(np.std(human)), 'std_agent': float(np.std(agent)),
+            'human_share': self.human_share,
+            'intervention_rate': self.intervention_rate,
+            'settled_position_error': settled(np.array(self.position_error)),
+            'settled_velocity': settled(np.array(self.velocity)), 'learn_seconds': self.learn_seconds}
+
+
+def _magnitudes(moments: list[np.ndarray]) -> np.ndarray:
+    return np.abs(_signed(moments))
+
+
+def _signed(moments: list[np.ndarray]) -> np.ndarray:
+    """(steps,), N m: of one axis as it is, of several its magnitude."""
+    stacked = np.array(moments)
+    return stacked[:, 0] if stacked.shape[1:] == (1,) else np.linalg.norm(stacked, axis=-1)

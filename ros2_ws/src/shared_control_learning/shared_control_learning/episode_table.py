@@ -7,7 +7,7 @@ from pathlib import Path
 
 from shared_control.files import write_atomically
 
-from .record import EpisodeRecord
+from .episode import Episode
 
 TABLE_NAME = 'episodes.csv'
 """Of the file in a learner's folder."""
@@ -29,9 +29,9 @@ class EpisodeTable:
         write_atomically(path, (_csv([list(rows[0])]) + _csv([list(row.values()) for row in rows])).encode()
                          if rows else b'')
 
-    def append(self, record: EpisodeRecord) -> None:
+    def append(self, episode: Episode) -> None:
         """The row of an episode that has ended."""
-        row = record.row()
+        row = episode.row()
         lines = _csv([list(row.values())] if self._has_header else [list(row), list(row.values())])
         with self._path.open('a', newline='') as file:
             file.write(lines)

@@ -1,73 +1,54 @@
 """The learn loop: the same for a live graph and for an environment in this process."""
 
 import time
+from collections.abc import Callable
 
 import numpy as np
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
 
-from .callbacks import Hooks
-from .coached_ppo import CoachedPPO
+from .callbacks import Callbacks
 from .episode import Episode
-from .episode_ppo import EpisodePPO
-from .presets import Preset
-from .record import EpisodeRecord
+from .learner import Learner
 
 
-def make_learner(preset: Preset, seed: int = 0) -> EpisodePPO:
-    """The learner of a preset."""
-    return EpisodePPO(preset, seed) if preset.coaching is None else CoachedPPO(preset, seed)
-
-
-def warm_up(preset: Preset) -> None:
-    """Choose and learn once with a learner of no consequence.
-
-    Torch loads parts of itself when they are first used, which takes seconds: too long in a live episode.
-    """
-    learner = make_learner(preset)
-    seen = np.zeros(3, np.float32)
-    episode = Episode(last_observation=seen)
-    for _ in range(preset.ppo.batch_size):
-        episode.add(seen, learner.explore(seen), 0.0, 1.0, 1.0)
-    learner.learn_from(episode)
-
-
-def learn(learner: EpisodePPO, env: BalanceEnv, episodes: int | None = None, hooks: Hooks | None = None) -> None:
-    """Learn, one update an episode, until ``learner.episode`` is ``episodes`` or the hooks say stop.
+def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, callbacks: Callbacks | None = None,
+          ) -> None:
+    """Learn, one update an episode, until ``learner.episode`` is ``episodes`` or the callbacks say stop.
 
     Args:
         episodes: in all, those of an earlier run included; no end when None.
     """
-    hooks = hooks or Hooks()
-    while (episodes is None or learner.episode < episodes) and not hooks.stop():
-        record = EpisodeRecord(learner.episode + 1, 'teach')
-        hooks.episode_started(record)
+    callbacks = callbacks or Callbacks()
+    while (episodes is None or learner.episode < episodes) and not callbacks.should_stop():
+        episode = Episode(env.task, learner.episode + 1)
+        callbacks.episode_started(episode)
         try:
-            episode = run_episode(learner, env, record, hooks)
+            run_episode(learner.explore, env, learner.begin(), episode, callbacks)
         except PlantInterrupted as error:
-            hooks.interrupted(error)
+            callbacks.interrupted(error)
             continue
-        hooks.learning_started(record)
+        callbacks.learning_started(episode)
         started = time.monotonic()
-        learner.learn_from(episode)
-        record.learn_seconds = time.monotonic() - started
-        hooks.episode_learned(record)
+        figures = learner.learn_from(episode)
+        episode.learn_seconds = time.monotonic() - started
+        callbacks.episode_learned(episode, figures)
 
 
-def run_episode(learner: EpisodePPO, env: BalanceEnv, record: EpisodeRecord, hooks: Hooks) -> Episode:
-    """One exploring episode."""
-    learner.start_episode()
-    observation, _ = env.reset(seed=learner.episode_seed())
-    episode = Episode()
+def run_episode(act: Callable[[np.ndarray], np.ndarray], env: SharedControlEnv, seed: int, episode: Episode,
+                callbacks: Callbacks) -> None:
+    """One episode of ``act``, observation (n,) -> action (k,), written down in ``episode``.
+
+    Raises:
+        PlantInterrupted: the episode is void.
+    """
+    observation, _ = env.reset(seed=seed)
     ended = False
     while not ended:
         seen = observation
-        action = learner.explore(seen)
+        action = act(seen)
         observation, reward, terminated, truncated, info = env.step(action)
-        episode.add(seen, action, reward, info['m_y_human'], info['m_y_applied'])
-        record.add(info)
-        hooks.stepped(record)
+        episode.add(seen, action, reward, info)
+        callbacks.stepped(episode)
         ended = terminated or truncated
     episode.last_observation = observation
-    episode.terminated = terminated
-    return episode

@@ -1,90 +1,93 @@
 """A learner in one file: policy, settings, and all it takes to go on learning.
 
 The file is safetensors; a JSON description stands in its header, so that both are written, and replaced, as one.
-Nothing in it is executed when it is read. ``python -c "import safetensors; ..."`` or the two lines of
-:func:`read_description` show the JSON.
+Nothing in it is executed when it is read.
 """
 
 import dataclasses
 import json
-import math
 from pathlib import Path
-from typing import Any, TypeVar, get_type_hints
+from typing import Annotated, Any
 
+import pydantic
 import torch
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save
+from shared_control.env import action_space, observation_space
 from shared_control.files import write_atomically
-from shared_control.tasks.balance.settings import TaskSettings
+from shared_control.plugins import TASKS, load
+from shared_control.tasks.task import Task
 
-from .coached_ppo import CoachedPPO
-from .corrections import Corrections
-from .episode_ppo import ACTION_SPACE, OBSERVATION_SPACE, EpisodePPO
-from .learn import make_learner
-from .presets import PRESETS, CoachingSettings, PpoSettings, Preset
+from .learner import Learner
+from .presets import preset
 
-FORMAT = 'shared-control policy 3'
+FORMAT = 'shared-control policy 4'
 SUFFIX = '.safetensors'
 POLICY_NAME = f'policy{SUFFIX}'
-"""Of the file in a learner's folder."""
+"""Name of the file in a learner's folder."""
 SIZE_MAX = 16 * 2**20
 """Bytes; a policy of two layers of 32 takes 40 thousand."""
-HIDDEN_MAX = (4, 1024)
-"""Most hidden layers, and most units of one."""
-CORRECTIONS_MAX = 100_000
-"""Most remembered corrections; three episodes have 2,250 at most."""
 _KEY = 'policy'
-Settings = TypeVar('Settings')
+
+Count = Annotated[int, pydantic.Field(ge=0, lt=2**63)]
+Name = Annotated[str, pydantic.Field(max_length=100)]
+
+
+class Description(pydantic.BaseModel):
+    """The JSON in the header of a policy file."""
+
+    model_config = pydantic.ConfigDict(extra='forbid')
+
+    format: str
+    preset: Name
+    task: Name
+    task_settings: dict[str, Any]
+    settings: dict[str, Any]
+    seed: Count
+    episode: Count
+    observation_space: dict[str, Any]
+    action_space: dict[str, Any]
 
 
 class PolicyFileError(ValueError):
     """A policy file is missing or unusable; the message names it and says why."""
 
 
-def save_policy(learner: EpisodePPO, path: Path) -> None:
+def save_policy(learner: Learner, path: Path) -> None:
     """Write ``learner`` to ``path``, as a whole or not at all."""
-    description = {
-        'format': FORMAT, 'preset': dataclasses.asdict(learner.preset), 'seed': learner.seed,
-        'episode': learner.episode, 'steps': learner.num_timesteps,
-        'observation_space': _describe(OBSERVATION_SPACE), 'action_space': _describe(ACTION_SPACE)}
-    write_atomically(path, save(_tensors(learner) | _remembered(learner), {_KEY: json.dumps(description)}))
+    description = Description(
+        format=FORMAT, preset=learner.name, task=learner.task.name, task_settings=dataclasses.asdict(learner.task),
+        settings=dataclasses.asdict(learner.settings), seed=learner.seed, episode=learner.episode,
+        **_spaces(learner.task))
+    write_atomically(path, save(learner.tensors(), {_KEY: description.model_dump_json()}))
 
 
-def load_policy(path: Path) -> EpisodePPO:
+def load_policy(path: Path) -> Learner:
     """The learner in ``path``, as it was when it was saved.
 
     Raises:
         PolicyFileError: there is no such file, or it is not what :func:`save_policy` writes.
     """
-    description = read_description(path)
     try:
+        description = Description.model_validate(read_description(path))
         learner = _learner(description)
         with safe_open(path, framework='pt') as file:
-            stored = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - not a mapping
-    except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
+            tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - not a mapping
+        for name, tensor in tensors.items():
+            if not bool(torch.isfinite(tensor).all()):
+                raise ValueError(f'{name} has numbers that are not finite')
+        learner.restore(tensors)
+    except PolicyFileError:
+        raise
+    except pydantic.ValidationError as error:
+        raise PolicyFileError(f'{path} is no usable policy: {explain(error)}') from error
+    except (SafetensorError, OSError, ValueError, TypeError) as error:
         raise PolicyFileError(f'{path} is no usable policy: {error}') from error
-    expected, remembered = _tensors(learner), _remembered(learner)
-    wanted = expected.keys() | remembered.keys()
-    if stored.keys() != wanted:
-        raise PolicyFileError(f'{path} is no usable policy: it should hold the tensors {", ".join(sorted(wanted))}; '
-                              f'these differ: {", ".join(sorted(stored.keys() ^ wanted))}')
-    rows = min((len(stored[name]) for name in remembered if stored[name].dim()), default=0)
-    for name, tensor in stored.items():
-        like = expected[name] if name in expected else remembered[name].new_empty(rows, remembered[name].shape[1])
-        if tensor.shape != like.shape or tensor.dtype != like.dtype or rows > CORRECTIONS_MAX:
-            raise PolicyFileError(f'{path} is no usable policy: {name} is {tensor.dtype} {tuple(tensor.shape)}, '
-                                  f'expected {like.dtype} {tuple(like.shape)}')
-        if not bool(torch.isfinite(tensor).all()):
-            raise PolicyFileError(f'{path} is no usable policy: {name} has numbers that are not finite')
-        if name in expected:
-            expected[name].copy_(tensor)
-    if isinstance(learner, CoachedPPO):
-        learner.corrections = Corrections(*(stored[name] for name in remembered))
     return learner
 
 
 def read_description(path: Path) -> dict[str, Any]:
-    """The JSON in the header of ``path``: format, preset, spaces, seed, episode.
+    """The JSON in the header of ``path`` (:class:`Description`), not yet checked but for its format.
 
     Raises:
         PolicyFileError: there is no such file, or it has no such header.
@@ -106,74 +109,38 @@ def read_description(path: Path) -> dict[str, Any]:
     return description
 
 
-def _learner(description: dict[str, Any]) -> EpisodePPO:
-    """A fresh learner as described. Raises KeyError, TypeError or ValueError when the description is wrong."""
-    for name, space in (('observation_space', OBSERVATION_SPACE), ('action_space', ACTION_SPACE)):
-        if description[name] != _describe(space):
-            raise ValueError(f'{name} is {description[name]}, expected {_describe(space)}')
-    stored = description['preset']
-    if stored['name'] not in PRESETS:
-        raise ValueError(f'no preset {stored["name"]!r}; there are {", ".join(PRESETS)}')
-    preset = Preset(
-        stored['name'], _settings(TaskSettings, stored['task']), _settings(PpoSettings, stored['ppo']),
-        None if stored['coaching'] is None else _settings(CoachingSettings, stored['coaching']))
-    for hidden in (preset.ppo.hidden, preset.ppo.value_hidden):
-        if len(hidden) > HIDDEN_MAX[0] or any(not 0 < n <= HIDDEN_MAX[1] for n in hidden):
-            raise ValueError(f'hidden layers {hidden}; at most {HIDDEN_MAX[0]} of {HIDDEN_MAX[1]} units')
-    learner = make_learner(preset, _count(description, 'seed'))
-    learner.episode = _count(description, 'episode')
-    learner.num_timesteps = _count(description, 'steps')
-    return learner
+def explain(error: pydantic.ValidationError) -> str:
+    """What is wrong, in a line: field and reason of each fault, without what was given in full."""
+    return '; '.join(
+        f'{".".join(map(str, fault["loc"])) or "it"}: {fault["msg"]}, not {str(fault["input"])[:100]!r}'
+        for fault in error.errors()[:5])
 
 
-def _settings(kind: type[Settings], stored: dict[str, Any]) -> Settings:
-    """A dataclass of settings from its JSON, checked field by field."""
-    hints = get_type_hints(kind)
-    if stored.keys() != hints.keys():
-        raise ValueError(f'{kind.__name__} should have {", ".join(hints)}')
-    values = {}
-    for name, value in stored.items():
-        if isinstance(value, list):
-            value = tuple(value)
-        numbers = value if isinstance(value, tuple) else (value,)
-        if not all(n is None or (isinstance(n, int | float) and math.isfinite(n)) for n in numbers):
-            raise ValueError(f'{kind.__name__}.{name} is {value!r}, not a finite number')
-        values[name] = value
-    return kind(**values)
+def _learner(description: Description) -> Learner:
+    """A fresh learner as described."""
+    known = preset(description.preset)
+    task = _validated(load(TASKS, description.task), description.task_settings, 'task_settings')
+    settings = _validated(type(known.settings), description.settings, 'settings')
+    for name, space in _spaces(task).items():
+        if getattr(description, name) != space:
+            raise ValueError(f'{name} is {getattr(description, name)}, expected {space}')
+    made = dataclasses.replace(known, task=task, settings=settings).make(description.seed)
+    made.episode = description.episode
+    return made
 
 
-def _count(description: dict[str, Any], name: str) -> int:
-    value = description[name]
-    if not isinstance(value, int) or not 0 <= value < 2**63:
-        raise ValueError(f'{name} is {value!r}, not a count')
-    return value
+def _validated(kind: type, stored: dict[str, Any], where: str) -> Any:
+    """A dataclass of settings from its JSON: every field is there, of its type and within its range."""
+    names = {field.name for field in dataclasses.fields(kind)}
+    if stored.keys() != names:
+        raise ValueError(f'{where} should have {", ".join(sorted(names))}; these differ: '
+                         f'{", ".join(sorted(stored.keys() ^ names))}')
+    try:
+        return pydantic.TypeAdapter(kind).validate_json(json.dumps(stored), strict=True)
+    except pydantic.ValidationError as error:
+        raise ValueError(f'{where}: {explain(error)}') from error
 
 
-def _describe(space) -> dict[str, Any]:
-    return {'low': space.low.tolist(), 'high': space.high.tolist(), 'dtype': str(space.dtype)}
-
-
-def _tensors(learner: EpisodePPO) -> dict[str, torch.Tensor]:
-    """The tensors that a learner lives in, by name: weights, and Adam's moments and step counts.
-
-    Copying into them changes the learner.
-    """
-    optimizer = learner.policy.optimizer
-    tensors = {}
-    for name, parameter in learner.policy.named_parameters():
-        state = optimizer.state[parameter]
-        if not state:  # as Adam itself starts
-            state.update(step=torch.tensor(0.0), exp_avg=torch.zeros_like(parameter),
-                         exp_avg_sq=torch.zeros_like(parameter))
-        tensors[f'policy.{name}'] = parameter.data
-        for key in ('step', 'exp_avg', 'exp_avg_sq'):
-            tensors[f'adam.{key}.{name}'] = state[key]
-    return tensors
-
-
-def _remembered(learner: EpisodePPO) -> dict[str, torch.Tensor]:
-    """The corrections that a coached learner still learns from, by name; as many rows as there are."""
-    if not isinstance(learner, CoachedPPO):
-        return {}
-    return {f'corrections.{f.name}': getattr(learner.corrections, f.name)
-            for f in dataclasses.fields(learner.corrections)}
+def _spaces(task: Task) -> dict[str, dict[str, Any]]:
+    return {name: {'low': space.low.tolist(), 'high': space.high.tolist(), 'dtype': str(space.dtype)}
+            for name, space in (('observation_space', observation_space(task)), ('action_space', action_space(task)))}

@@ -1,92 +1,55 @@
-"""What is learned and how, by name."""
+"""What is learned and how, by name: each is an entry point of the group ``shared_control.learners``."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from shared_control.tasks.balance.settings import DEFAULT_TASK, THESIS_TASK, TaskSettings
+from shared_control.plugins import LEARNERS, load
+from shared_control.tasks.balance import BALANCE, THESIS
+from shared_control.tasks.task import Task
 
+from .settings import CoachingSettings, PpoLearnerSettings, PpoSettings
 
-@dataclass(frozen=True)
-class PpoSettings:
-    """Settings of PPO (Schulman et al., 2017) with one update an episode."""
-
-    hidden: tuple[int, ...] = ()
-    """Units of the policy's hidden layers (tanh). None at all: a linear policy of three weights and a bias."""
-    value_hidden: tuple[int, ...] = (32, 32)
-    """Units of the value function's hidden layers (tanh)."""
-    initial_std: float = 0.6
-    """Of the policy in the first episode, in units of the action."""
-    std_decay: float | None = 0.95
-    """What the standard deviation is multiplied by after each episode; None: PPO learns it."""
-    std_min: float = 0.05
-    """The least standard deviation that a decay leads to."""
-    noise_seconds: float = 0.0
-    """Correlation time of the exploring noise, s; 0: white, drawn anew at each step."""
-    learning_rate: float = 1e-2
-    """Of Adam, in the first episode."""
-    learning_rate_decay: float = 1.0
-    """What the learning rate is multiplied by after each episode."""
-    learning_rate_min: float = 1e-3
-    """The least learning rate that a decay leads to."""
-    epochs: int = 10
-    batch_size: int = 125
-    gamma: float = 0.99
-    gae_lambda: float = 0.95
-    clip_range: float = 0.2
-    entropy_weight: float = 0.0
-    value_weight: float = 0.5
-    max_gradient_norm: float = 0.5
-
-    def std_in(self, episode: int) -> float | None:
-        """The policy's standard deviation in ``episode`` (from 1); None when it is learned."""
-        return None if self.std_decay is None else max(self.std_min, self.initial_std * self.std_decay ** (episode - 1))
-
-    def learning_rate_in(self, episode: int) -> float:
-        """Learning rate of the update after ``episode`` (from 1)."""
-        rate = self.learning_rate * self.learning_rate_decay ** (episode - 1)
-        return max(rate, min(self.learning_rate, self.learning_rate_min))
+if TYPE_CHECKING:
+    from .learner import Learner
 
 
 @dataclass(frozen=True)
-class CoachingSettings:
-    """How a correction teaches the policy."""
-
-    gain: float = 2.0
-    """g: how far a correction of a full action's moment moves the label, in units of the action."""
-    delays: tuple[float, ...] = (0.3, 0.4, 0.5, 0.6, 0.7)
-    """D: how long after the robot's action people may press, s. Each correction counts for all of them."""
-    memory_episodes: int = 3
-    """Corrections of so many episodes are taught, again and again."""
-    weight: float = 1.0
-    """lambda in the first episode."""
-    fade_episodes: int = 8
-    """The episode from which on lambda is 0; it falls linearly until then."""
-
-    def weight_in(self, episode: int) -> float:
-        """lambda in ``episode`` (from 1)."""
-        return self.weight * max(0.0, 1.0 - (episode - 1) / self.fade_episodes)
-
-
-@dataclass(frozen=True)
-class Preset:
-    """A task and a way to learn it."""
+class Preset(ABC):
+    """A task, and a way to learn it. Quick to load: what is heavy is imported when a learner is made."""
 
     name: str
-    task: TaskSettings
-    ppo: PpoSettings
-    coaching: CoachingSettings | None = None
-    """None: PPO is told nothing of the human."""
+    task: Task
+    settings: Any
+    """A frozen dataclass of everything that can be set, kept with every policy."""
+
+    @abstractmethod
+    def make(self, seed: int = 0) -> 'Learner':
+        """A learner of ``task`` that has learned nothing yet; ``seed``: of everything random."""
 
 
-PRESETS: dict[str, Preset] = {preset.name: preset for preset in (
-    Preset('coached', DEFAULT_TASK, PpoSettings(
-        initial_std=0.4, std_decay=0.93, learning_rate=3e-2, learning_rate_decay=0.93), CoachingSettings()),
-    Preset('thesis', THESIS_TASK, PpoSettings(
-        hidden=(64, 64), value_hidden=(64, 64), initial_std=1.0, std_decay=None, learning_rate=3e-4, batch_size=64)),
-    Preset('autonomous', DEFAULT_TASK, PpoSettings(
-        initial_std=0.6, std_decay=0.95, noise_seconds=0.5, learning_rate=1e-2)),
-)}
-"""``coached``: corrections are labels, too. ``thesis``: the human's moment is a part of the environment and nothing
-else (3.3, 3.4); the text gives no settings of PPO, so they are those of Stable-Baselines3. ``autonomous``: no human."""
+@dataclass(frozen=True)
+class PpoPreset(Preset):
+    """PPO, with a person's corrections or without."""
+
+    settings: PpoLearnerSettings
+
+    def make(self, seed: int = 0) -> 'Learner':
+        """See :class:`Preset`."""
+        from .ppo_learner import PpoLearner
+        return PpoLearner(self.name, self.task, self.settings, seed)
+
+
+COACHED = PpoPreset('coached', BALANCE, PpoLearnerSettings(
+    PpoSettings(initial_std=0.4, std_decay=0.93, learning_rate=3e-2, learning_rate_decay=0.93), CoachingSettings()))
+"""Corrections are labels, too."""
+THESIS_PPO = PpoPreset('thesis', THESIS, PpoLearnerSettings(PpoSettings(
+    hidden=(64, 64), value_hidden=(64, 64), initial_std=1.0, std_decay=None, learning_rate=3e-4, batch_size=64)))
+"""The human's moment is a part of the environment and nothing else (3.3, 3.4); the text gives no settings of PPO, so
+they are those of Stable-Baselines3."""
+AUTONOMOUS = PpoPreset('autonomous', BALANCE, PpoLearnerSettings(PpoSettings(
+    initial_std=0.6, std_decay=0.95, noise_seconds=0.5, learning_rate=1e-2)))
+"""No human; tuned for a robot that nobody teaches."""
 
 
 def preset(name: str) -> Preset:
@@ -95,6 +58,4 @@ def preset(name: str) -> Preset:
     Raises:
         ValueError: there is none; the message lists the names.
     """
-    if name not in PRESETS:
-        raise ValueError(f'no preset {name!r}; there are {", ".join(PRESETS)}')
-    return PRESETS[name]
+    return load(LEARNERS, name)

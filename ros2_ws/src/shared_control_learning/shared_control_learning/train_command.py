@@ -4,15 +4,16 @@ import argparse
 import json
 import shutil
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, load, names
 from shared_control.teaching.profiles import PROFILES, profile
 from tqdm import tqdm
 
-from .callbacks import Hooks
-from .presets import PRESETS, preset
-from .record import EpisodeRecord
+from .callbacks import Callbacks
+from .episode import Episode
+from .presets import preset
 from .training import RUN_NAME, TrainingError, TrainingRun, read_run, train
 
 
@@ -23,7 +24,9 @@ def add_command(commands: argparse._SubParsersAction) -> None:
         description='Teaches a policy headless and as fast as the machine can, with a simulated tutor or none; after '
         'each episode the policy is tested alone. The folder gets policy.safetensors, episodes.csv, run.json and '
         'TensorBoard logs.')
-    parser.add_argument('--preset', choices=tuple(PRESETS), default='coached', help='what is learned, and how')
+    parser.add_argument('--preset', choices=names(LEARNERS), default='coached', help='what is learned, and how')
+    parser.add_argument('--task', choices=names(TASKS), help='default: the one that the preset was made for')
+    parser.add_argument('--world', choices=names(WORLDS), default='bullet', help='the physics (default: bullet)')
     parser.add_argument('--tutor', choices=(*PROFILES, 'none'), help='simulated tutor (default: expert; none for the '
                         'preset autonomous)')
     parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
@@ -44,14 +47,17 @@ def run(args: argparse.Namespace) -> int:
     """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
     _prepare(args)
     chosen = preset(args.preset)
+    if args.task:
+        chosen = replace(chosen, task=load(TASKS, args.task)())
     tutor = args.tutor or ('none' if args.preset == 'autonomous' else 'expert')
     done = read_run(args.output).episodes if args.resume else 0
     try:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
             result = train(
                 chosen, None if tutor == 'none' else profile(tutor), args.seed, args.episodes,
-                until_skilled=args.until_skilled, human_only=args.human_only, folder=args.output, tensorboard=True,
-                evaluate_every=args.evaluate_every, hooks=_Bar(bar, args.output))
+                until_skilled=args.until_skilled, human_only=args.human_only, world=args.world, folder=args.output,
+                tensorboard=True,
+                evaluate_every=args.evaluate_every, callbacks=_Bar(bar, args.output))
     except KeyboardInterrupt:
         print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)
         return 130
@@ -74,17 +80,17 @@ def _prepare(args: argparse.Namespace) -> None:
         raise TrainingError(f'{args.output} holds a run: --resume, --overwrite, or another --output')
 
 
-class _Bar(Hooks):
+class _Bar(Callbacks):
     """Moves the progress bar on."""
 
     def __init__(self, bar: tqdm, folder: Path):
         self._bar, self._folder = bar, folder
 
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
+    def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
+        """See :class:`Callbacks`."""
         tests = [passed for _, passed in read_run(self._folder).tests]
         self._bar.set_postfix_str(
-            f'return {record.episode_return:.0f}, human {record.intervention_rate:.0%} of the time, '
+            f'return {episode.episode_return:.0f}, human {episode.intervention_rate:.0%} of the time, '
             f'tests passed {sum(tests)} of {len(tests)}{", the last one" if tests[-1:] == [True] else ""}')
         self._bar.update()
 

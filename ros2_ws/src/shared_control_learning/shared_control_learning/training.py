@@ -6,22 +6,22 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
 from shared_control.teaching.profiles import TutorProfile
 from shared_control.teaching.tutor import SimulatedTutor
 from shared_control_sim.local_plant import LocalPlant
-from stable_baselines3.common.logger import configure
+from stable_baselines3.common.logger import Logger, configure
 
-from .callbacks import Hooks
-from .episode_ppo import EpisodePPO
+from .callbacks import Callbacks
+from .episode import Episode
 from .episode_table import TABLE_NAME, EpisodeTable
-from .evaluation.evaluate import passes, test_settings
-from .learn import learn, make_learner
+from .evaluation.evaluate import as_tested, passes
+from .learn import learn
+from .learner import Learner
 from .policy_file import POLICY_NAME, load_policy, save_policy
 from .presets import Preset
-from .record import EpisodeRecord
 
 RUN_NAME = 'run.json'
 TENSORBOARD_NAME = 'tensorboard'
@@ -71,8 +71,8 @@ class TrainingRun:
 
 
 def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, *, until_skilled: bool = True,
-          human_only: bool = False, folder: Path | None = None, tensorboard: bool = False,
-          evaluate_every: int = 1, hooks: Hooks | None = None) -> TrainingRun:
+          human_only: bool = False, world: str = 'bullet', folder: Path | None = None, tensorboard: bool = False,
+          evaluate_every: int = 1, callbacks: Callbacks | None = None) -> TrainingRun:
     """Teach a policy in this process, by a simulated tutor or by nobody.
 
     A run that was stopped goes on from its folder, and ends as if it had never stopped.
@@ -84,34 +84,33 @@ def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, 
         episodes: at most so many, those of an earlier part of the run included.
         until_skilled: stop when the policy has passed two tests in a row.
         human_only: the agent's moment is not applied (4.7).
+        world: name of the physics (entry point of the group ``shared_control.worlds``).
         folder: for policy, table and run; nothing is kept when None.
         tensorboard: write logs for TensorBoard there, too.
         evaluate_every: test after so many episodes each, 0: never.
-        hooks: are told of the episodes, each after its test.
+        callbacks: called for the episodes, each after its test.
 
     Raises:
         TrainingError: ``folder`` holds another run.
         PolicyFileError: ``folder`` holds an unusable policy.
     """
     run = TrainingRun(preset.name, None if tutor is None else asdict(tutor), seed, human_only)
-    learner = make_learner(preset, seed)
+    learner = preset.make(seed)
     if folder is not None:
         learner, run = _resumed(learner, run, folder)
-        if tensorboard:
-            learner.set_logger(configure(str(folder / TENSORBOARD_NAME), ['tensorboard']))
     person = None if tutor is None else SimulatedTutor(tutor, seed, learner.episode)
-    env = BalanceEnv(LocalPlant(person, preset.task.moment_limit), preset.task, human_only)
-    test_env = BalanceEnv(LocalPlant(None, preset.task.moment_limit), test_settings(preset.task))
+    env = SharedControlEnv(LocalPlant(preset.task, person, world), preset.task, human_only)
+    test_env = SharedControlEnv(LocalPlant(preset.task, world=world), as_tested(preset.task))
     try:
         learn(learner, env, episodes, _Keeper(
-            learner, run, folder, test_env, evaluate_every, until_skilled, hooks or Hooks()))
+            learner, run, folder, tensorboard, test_env, evaluate_every, until_skilled, callbacks or Callbacks()))
     finally:
         env.close()
         test_env.close()
     return run
 
 
-def passes_now(learner: EpisodePPO, test_env: BalanceEnv, seed: int) -> bool:
+def passes_now(learner: Learner, test_env: SharedControlEnv, seed: int) -> bool:
     """Whether the learner of the run ``seed`` passes the test that belongs to the episodes it has learned from."""
     return passes(learner.act, test_env, episode_seed(TEST_SEED + seed, learner.episode))
 
@@ -131,7 +130,7 @@ def read_run(folder: Path) -> TrainingRun:
         raise TrainingError(f'{path} is no run: {error}') from error
 
 
-def _resumed(learner: EpisodePPO, run: TrainingRun, folder: Path) -> tuple[EpisodePPO, TrainingRun]:
+def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner, TrainingRun]:
     """The learner and the run in ``folder``, or those given when there are none yet."""
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / POLICY_NAME).exists():
@@ -149,50 +148,53 @@ def _resumed(learner: EpisodePPO, run: TrainingRun, folder: Path) -> tuple[Episo
     return learner, stored
 
 
-class _Keeper(Hooks):
-    """Tests, keeps and tells after each episode."""
+class _Keeper(Callbacks):
+    """Tests, keeps and passes on after each episode."""
 
-    def __init__(self, learner: EpisodePPO, run: TrainingRun, folder: Path | None, test_env: BalanceEnv,
-                 evaluate_every: int, until_skilled: bool, watcher: Hooks):
+    def __init__(self, learner: Learner, run: TrainingRun, folder: Path | None, tensorboard: bool,
+                 test_env: SharedControlEnv, evaluate_every: int, until_skilled: bool, watcher: Callbacks):
         self._learner, self._run, self._folder, self._test_env = learner, run, folder, test_env
         self._evaluate_every, self._until_skilled, self._watcher = evaluate_every, until_skilled, watcher
         self._started = time.monotonic() - run.seconds
+        self._logger = configure(str(folder / TENSORBOARD_NAME), ['tensorboard']) if folder and tensorboard else None
         if folder is not None:
             self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)
 
-    def stop(self) -> bool:
-        """See :class:`Hooks`."""
-        return (self._until_skilled and self._run.skilled is not None) or self._watcher.stop()
+    def should_stop(self) -> bool:
+        """See :class:`Callbacks`."""
+        return (self._until_skilled and self._run.skilled is not None) or self._watcher.should_stop()
 
-    def episode_started(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
-        self._watcher.episode_started(record)
+    def episode_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._watcher.episode_started(episode)
 
-    def stepped(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
-        self._watcher.stepped(record)
+    def stepped(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._watcher.stepped(episode)
 
-    def episode_learned(self, record: EpisodeRecord) -> None:
-        """See :class:`Hooks`."""
+    def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
+        """See :class:`Callbacks`."""
         run = self._run
-        run.returns.append(record.episode_return)
-        run.intervention_rates.append(record.intervention_rate)
-        if self._evaluate_every and record.episode % self._evaluate_every == 0:
-            run.tests.append((record.episode, passes_now(self._learner, self._test_env, run.seed)))
+        run.returns.append(episode.episode_return)
+        run.intervention_rates.append(episode.intervention_rate)
+        if self._evaluate_every and episode.number % self._evaluate_every == 0:
+            run.tests.append((episode.number, passes_now(self._learner, self._test_env, run.seed)))
         run.seconds = time.monotonic() - self._started
         if self._folder is not None:
-            self._keep(record, self._folder)
-        self._watcher.episode_learned(record)
+            self._table.append(episode)
+            write_atomically(self._folder / RUN_NAME, (json.dumps(asdict(run), indent=2) + '\n').encode())
+            save_policy(self._learner, self._folder / POLICY_NAME)
+        if self._logger is not None:
+            self._log(self._logger, episode, figures)
+        self._watcher.episode_learned(episode, figures)
 
-    def _keep(self, record: EpisodeRecord, folder: Path) -> None:
-        self._table.append(record)
-        write_atomically(folder / RUN_NAME, (json.dumps(asdict(self._run), indent=2) + '\n').encode())
-        save_policy(self._learner, folder / POLICY_NAME)
-        logger = self._learner.logger
-        for name, value in record.row().items():
+    def _log(self, logger: Logger, episode: Episode, figures: dict[str, float]) -> None:
+        for name, value in {f'episode/{name}': value for name, value in episode.row().items()}.items():
             if not isinstance(value, str):
-                logger.record(f'episode/{name}', value)
-        for episode, passed in self._run.tests[-1:]:
-            if episode == record.episode:
+                logger.record(name, value)
+        for name, figure in figures.items():
+            logger.record(name, figure)
+        for number, passed in self._run.tests[-1:]:
+            if number == episode.number:
                 logger.record('test/passed', float(passed))
-        logger.dump(record.episode)
+        logger.dump(episode.number)

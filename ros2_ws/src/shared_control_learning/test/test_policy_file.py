@@ -5,10 +5,11 @@ import json
 import pytest
 import torch
 from safetensors.torch import load, save
-from shared_control.env import BalanceEnv
-from shared_control_learning.learn import learn, make_learner
+from shared_control.env import SharedControlEnv
+from shared_control.plugins import LEARNERS, names
+from shared_control_learning.learn import learn
 from shared_control_learning.policy_file import PolicyFileError, load_policy, read_description, save_policy
-from shared_control_learning.presets import PRESETS, preset
+from shared_control_learning.presets import COACHED, preset
 
 
 def weights(learner):
@@ -20,24 +21,24 @@ def path(tmp_path):
     return tmp_path / 'policy.safetensors'
 
 
-@pytest.mark.parametrize('name', PRESETS)
+@pytest.mark.parametrize('name', names(LEARNERS))
 def test_resuming_is_as_if_nothing_had_happened(path, name, fake_plant):
-    env = BalanceEnv(fake_plant(5.0, falls_at=150), preset(name).task)
-    straight = make_learner(preset(name), 7)
+    env = SharedControlEnv(fake_plant(5.0, falls_at=150), preset(name).task)
+    straight = preset(name).make(7)
     learn(straight, env, episodes=3)
-    first = make_learner(preset(name), 7)
+    first = preset(name).make(7)
     learn(first, env, episodes=2)
     save_policy(first, path)
     resumed = load_policy(path)
-    assert (resumed.episode, resumed.seed, resumed.preset) == (2, 7, preset(name))
+    assert (resumed.episode, resumed.seed, resumed.name) == (2, 7, name)
+    assert (resumed.task, resumed.settings) == (preset(name).task, preset(name).settings)
     assert torch.equal(weights(resumed), weights(first))
     learn(resumed, env, episodes=3)
     assert torch.equal(weights(resumed), weights(straight))
-    assert resumed.num_timesteps == straight.num_timesteps
 
 
 def test_saves_over_an_older_file_and_leaves_nothing_else(path):
-    learner = make_learner(preset('coached'))
+    learner = COACHED.make()
     save_policy(learner, path)
     learner.episode = 4
     save_policy(learner, path)
@@ -65,7 +66,7 @@ def test_missing_and_foreign_files_are_refused(path):
 
 
 def test_a_truncated_file_is_refused(path):
-    save_policy(make_learner(preset('coached')), path)
+    save_policy(COACHED.make(), path)
     content = path.read_bytes()
     for size in (4, 100, len(content) // 2, len(content) - 1):
         path.write_bytes(content[:size])
@@ -74,7 +75,7 @@ def test_a_truncated_file_is_refused(path):
 
 def change(path, description=lambda d: None, tensors=lambda t: None):
     """Write a good file with something changed in it."""
-    save_policy(make_learner(preset('coached')), path)
+    save_policy(COACHED.make(), path)
     stored, words = load(path.read_bytes()), read_description(path)
     description(words)
     tensors(stored)
@@ -83,12 +84,12 @@ def change(path, description=lambda d: None, tensors=lambda t: None):
 
 @pytest.mark.parametrize(('edit', 'reason'), [
     (lambda d: d.update(format='shared-control policy 99'), 'of this version'),
-    (lambda d: d['preset'].update(name='magic'), "no preset 'magic'"),
-    (lambda d: d['preset']['ppo'].update(hidden=[100_000]), 'hidden layers'),
-    (lambda d: d['preset']['ppo'].update(value_hidden=[8, 8]), 'expected torch.float32'),
-    (lambda d: d['preset']['ppo'].update(hidden='wide'), 'hidden'),
-    (lambda d: d['preset']['task'].update(action_scale=float('nan')), 'action_scale'),
-    (lambda d: d['preset']['task'].pop('action_scale'), 'TaskSettings'),
+    (lambda d: d.update(preset='magic'), "no learner 'magic'"),
+    (lambda d: d['settings']['ppo'].update(hidden=[100_000]), 'hidden'),
+    (lambda d: d['settings']['ppo'].update(value_hidden=[8, 8]), 'expected torch.float32'),
+    (lambda d: d['settings']['ppo'].update(hidden='wide'), 'hidden'),
+    (lambda d: d['task_settings'].update(action_scale=float('nan')), 'action_scale'),
+    (lambda d: d['task_settings'].pop('action_scale'), 'action_scale'),
     (lambda d: d.update(episode=-1), 'episode'),
     (lambda d: d.update(seed='x'), 'seed'),
     (lambda d: d['action_space'].update(low=[-2.0]), 'action_space'),

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from shared_control.control.references import FREQUENCIES, cosine_velocity
-from shared_control.env import BalanceEnv
-from shared_control.tasks.balance.settings import DEFAULT_TASK
-from shared_control_learning.evaluation.evaluate import evaluate, test_settings
+from shared_control.env import SharedControlEnv
+from shared_control.tasks.balance import BALANCE
+from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.evaluation.perturbation import FORCE, PUSHES, run_perturbation
 from shared_control_learning.evaluation.randomized import run_randomized
 from shared_control_learning.evaluation.result import TRACKS
@@ -24,11 +24,11 @@ def check_shapes(result, episodes, seconds):
 def test_randomized_is_the_evaluation_with_more_written_down(good_robot):
     result = run_randomized(good_robot, episodes=2)
     check_shapes(result, 2, 10)
-    env = BalanceEnv(LocalPlant(), test_settings(DEFAULT_TASK))
-    for ours, theirs in zip(result.episodes, evaluate(good_robot, env, 2).episodes, strict=True):
-        np.testing.assert_array_equal(ours.position_error, theirs.position_error)
-        np.testing.assert_array_equal(ours.velocity, theirs.velocity)
-        assert ours.success and theirs.success
+    env = SharedControlEnv(LocalPlant(), as_tested(BALANCE))
+    for row, theirs in enumerate(evaluate(good_robot, env, 2).episodes):
+        np.testing.assert_array_equal(result.position_error[row], theirs.position_error)
+        np.testing.assert_array_equal(result.velocity[row], theirs.velocity)
+        assert result.success[row] and theirs.success
     env.close()
     assert (result.manipulability > 0.07).all() and (result.manipulability < 0.076).all()
     np.testing.assert_allclose(

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from shared_control.cli import main
 from shared_control.teaching.profiles import profile
-from shared_control_learning.callbacks import Hooks
+from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode_table import read_rows
 from shared_control_learning.presets import preset
 from shared_control_learning.training import TrainingError, TrainingRun, read_run, train
@@ -19,14 +19,14 @@ class Killed(Exception):
     """Stands for the end of the process."""
 
 
-class KillIn(Hooks):
+class KillIn(Callbacks):
     """Ends the run in the middle of an episode."""
 
     def __init__(self, episode):
         self._episode = episode
 
-    def stepped(self, record):
-        if record.episode == self._episode and record.steps == 40:
+    def stepped(self, episode):
+        if episode.number == self._episode and len(episode) == 40:
             raise Killed
 
 
@@ -34,7 +34,7 @@ def test_a_run_that_was_killed_ends_as_one_that_was_not(tmp_path):
     train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'whole', evaluate_every=0)
     for episode in (2, 3):
         with pytest.raises(Killed):
-            train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, hooks=KillIn(episode))
+            train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, callbacks=KillIn(episode))
     run = train(SHORT, EXPERT, 5, 3, folder=tmp_path / 'parts', evaluate_every=0, tensorboard=True)
     whole, parts = ((tmp_path / name / 'policy.safetensors').read_bytes() for name in ('whole', 'parts'))
     assert whole == parts
@@ -67,8 +67,8 @@ def test_skilled_is_two_tests_in_a_row():
 def test_human_only_leaves_the_agent_out(tmp_path):
     train(SHORT, EXPERT, 5, 1, human_only=True, folder=tmp_path, evaluate_every=0)
     row, = read_rows(tmp_path / 'episodes.csv')
-    assert float(row['mean_abs_m_y_agent']) == 0.0
-    assert float(row['mean_abs_m_y_human']) > 0.0
+    assert float(row['mean_abs_agent']) == 0.0
+    assert float(row['mean_abs_human']) > 0.0
 
 
 def command(monkeypatch, *arguments):

@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
+from shared_control.tasks.balance import BALANCE
 from shared_control_learning.evaluation.result import ProtocolResult
 from shared_control_learning.evaluation.statistics import curve, episode_figures, mean_and_sem, policy_figures
-from shared_control_learning.learn import make_learner
 from shared_control_learning.policy_file import PolicyFileError, save_policy
-from shared_control_learning.presets import preset
+from shared_control_learning.presets import COACHED
 from shared_control_records.evaluation.command import add_command
 from shared_control_records.evaluation.figures import plots
 from shared_control_records.evaluation.policies import load_policies
@@ -29,14 +29,15 @@ def constant(*errors, fallen_after=None, test='randomized'):
         fallen[-1] = True
         for track in tracks:
             track[-1, fallen_after:] = np.nan
-    return ProtocolResult(test, np.arange(1, STEPS + 1) * 0.02, *tracks, fallen)
+    return ProtocolResult(test, np.arange(1, STEPS + 1) * 0.02, *tracks, fallen, np.array([
+        BALANCE.succeeded(row, 0 * row, fell) for row, fell in zip(error, fallen, strict=True)]))
 
 
 def test_figures_of_episodes_end_where_the_ball_fell():
     kept, fallen = episode_figures(constant(-0.01, 0.1, fallen_after=200))
     assert (kept['kept'], kept['success'], fallen['kept'], fallen['success']) == (1, 1, 0, 0)
     assert kept['position_error'] == pytest.approx(0.01) and fallen['position_error_max'] == pytest.approx(0.1)
-    assert kept['m_y_agent'] == 2.0 and kept['one_minus_k_w_squared'] == pytest.approx(1 - 0.07 ** 2)
+    assert kept['agent_moment'] == 2.0 and kept['one_minus_k_w_squared'] == pytest.approx(1 - 0.07 ** 2)
 
 
 def test_sem_is_the_standard_error_of_what_is_known():
@@ -96,7 +97,7 @@ def session(tmp_path):
     """Folders with a policy each: as a session has it, and as a training run has it."""
     for place in ('s/learner', 'run'):
         (tmp_path / place).mkdir(parents=True)
-        save_policy(make_learner(preset('coached'), 1), tmp_path / place / 'policy.safetensors')
+        save_policy(COACHED.make(1), tmp_path / place / 'policy.safetensors')
     return tmp_path
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from shared_control import contract
+from shared_control.keys import Key
 from shared_control.robot.limits import DOF
-from shared_control.teaching.keys import Key
 from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import episode_tracks
 from shared_control_records.bag.reader import BagReadError, read_bag

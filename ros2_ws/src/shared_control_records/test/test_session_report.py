@@ -2,12 +2,14 @@
 
 import json
 import shutil
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
+from shared_control.tasks.balance import BALANCE
+from shared_control_learning.episode import Episode
+from shared_control_learning.evaluation.evaluate import Evaluation
 from shared_control_records.session import bag_metadata as in_bag
 from shared_control_records.session import report
 from shared_control_records.session.bag_report import write_bag_report
@@ -20,25 +22,12 @@ from shared_control_testing import sessions as made
 PNG = b'\x89PNG'
 
 
-@dataclass
-class Episode:
-    """As ``learning.evaluate`` gives it."""
-
-    position_error: np.ndarray
-    velocity: np.ndarray
-    fallen: bool
-    success: bool
-
-
-@dataclass
-class Evaluation:
-    episodes: tuple
-
-
 def evaluation():
     """19 good episodes and one in which the ball fell."""
-    good = Episode(0.15 * np.exp(-np.arange(500) / 50), np.zeros(500), fallen=False, success=True)
-    bad = Episode(np.linspace(0.1, 0.3, 80), np.ones(80), fallen=True, success=False)
+    good = Episode(BALANCE, 1, 'test', position_error=(0.15 * np.exp(-np.arange(500) / 50)).tolist(),
+                   velocity=[0.0] * 500)
+    bad = Episode(BALANCE, 1, 'test', position_error=np.linspace(0.1, 0.3, 80).tolist(), velocity=[1.0] * 80,
+                  failed=True)
     return Evaluation((good,) * 19 + (bad,))
 
 

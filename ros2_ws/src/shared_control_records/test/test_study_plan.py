@@ -67,7 +67,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     ('seed: 3', 'seed: -1', 'seed is -1, expected a whole number of at least 0'),
     ('expert: 1', 'expert: 0', 'expert is 0'),
     ('expert: 1', 'wizard: 1', "no profile 'wizard'; there are expert"),
-    ('coached: {', 'coach: {', "conditions.coach.preset: no preset 'coach'; there are coached"),
+    ('coached: {', 'coach: {', "conditions.coach.preset: no learner 'coach'; there are autonomous"),
     ('episodes: 5', 'episodes: five', "episodes is 'five', expected a whole number"),
     ('taught: false', 'taught: maybe', "conditions.alone.taught is 'maybe', expected true or false"),
     ('conditions:', 'tests: [jump]\nconditions:', 'tests: no jump; there are randomized'),

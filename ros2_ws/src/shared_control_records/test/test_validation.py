@@ -14,7 +14,7 @@ from shared_control_records.validation.model_checks import BOUND, check_model, h
 from shared_control_records.validation.newton_euler import newton_euler
 from shared_control_records.validation.run import Validation
 from shared_control_records.validation.tracking import Tracking, track
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.bullet import BulletWorld
 
 
 @pytest.fixture(scope='module')
@@ -80,7 +80,7 @@ def test_the_reference_moves_the_tray_and_turns_nothing(model):
 
 
 def test_the_non_linear_terms_help_the_low_gains(model):
-    world = BallOnTrayWorld()
+    world = BulletWorld()
     reference = cosine_reference(model, 1.0, 3.0, 0.001)
     with_terms, without = (track(model, world, 'low', terms, 1.0, reference) for terms in (True, False))
     world.close()

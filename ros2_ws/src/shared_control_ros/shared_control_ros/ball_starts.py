@@ -4,7 +4,7 @@ from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from shared_control.tasks.balance.task import BallStarts
+from shared_control.tasks.task import BallStarts
 
 from .contract import SEED_SERVICE
 

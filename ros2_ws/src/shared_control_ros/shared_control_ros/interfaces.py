@@ -50,7 +50,8 @@ INTERFACES = {
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
     'ppo_agent_node': Interface(
         publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
-        subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.APPLIED_WRENCH),
+        subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
+                    contract.APPLIED_WRENCH),
         serves=(contract.START_SERVICE, contract.REPEAT_SERVICE, contract.FINISH_SERVICE),
         calls=SIMULATOR),
     'sim_tutor_node': Interface(

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 from geometry_msgs.msg import WrenchStamped
 
 from .contract import BASE_FRAME
@@ -14,13 +15,13 @@ def base_wrench() -> WrenchStamped:
     return wrench
 
 
-def set_moment(wrench: WrenchStamped, m_y: float) -> None:
-    """Write M_y, N m, in place."""
-    wrench.wrench.torque.y = m_y
+def set_moment(wrench: WrenchStamped, moment: np.ndarray) -> None:
+    """Write M_y, (1,), N m, in place."""
+    wrench.wrench.torque.y = float(moment[0])
 
 
-def moment_of(wrench: WrenchStamped) -> float:
-    """M_y of a wrench, N m.
+def moment_of(wrench: WrenchStamped) -> np.ndarray:
+    """M_y of a wrench, (1,), N m.
 
     Raises:
         ValueError: the wrench is given in another frame than the base's, or M_y is not finite; the message says which.
@@ -30,4 +31,4 @@ def moment_of(wrench: WrenchStamped) -> float:
     m_y = wrench.wrench.torque.y
     if not math.isfinite(m_y):
         raise ValueError(f'torque.y is {m_y}')
-    return m_y
+    return np.array([m_y])

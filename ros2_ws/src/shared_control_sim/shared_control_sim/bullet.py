@@ -9,13 +9,14 @@ from panda_tray_description import URDF_PATH
 from shared_control.robot.limits import DOF, JOINT_NAMES, TORQUE_MAX, clamp_torque
 from shared_control.robot.model import GRAVITY
 from shared_control.robot.posture import Q_REFERENCE
-from shared_control.tasks.balance.scene import BALL_START_Y, BALL_START_Z, TRAY_HOME_X, Ball
+from shared_control.scene import Ball, Scene
+from shared_control.tasks.balance import BALANCE
 
 _POSITION, _VELOCITY = itemgetter(0), itemgetter(1)
 """Of what PyBullet says of a joint."""
 
 
-class BallOnTrayWorld:
+class BulletWorld:
     """A Panda that takes joint torques, with a ball on its tray.
 
     An episode depends on nothing that came before it: :meth:`reset` restores a saved state of the whole world,
@@ -23,12 +24,12 @@ class BallOnTrayWorld:
     the same start go through the same states, bit for bit.
 
     Args:
-        ball: the ball.
+        scene: the tray and the ball.
         dt: length of a tick, s.
         urdf: the robot's description.
     """
 
-    def __init__(self, ball: Ball = Ball(), dt: float = 0.001, urdf: Path = URDF_PATH):
+    def __init__(self, scene: Scene = BALANCE.scene, dt: float = 0.001, urdf: Path = URDF_PATH):
         self.dt = dt
         self.client = pybullet.connect(pybullet.DIRECT)
         pybullet.setGravity(0, 0, -GRAVITY, self.client)
@@ -36,7 +37,7 @@ class BallOnTrayWorld:
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_IGNORE_VISUAL_SHAPES
         self.arm = pybullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
         self._find_links()
-        self._add_ball(ball)
+        self._add_ball(scene.ball, scene.home)
         for index, q in zip(self._joints, Q_REFERENCE, strict=True):
             pybullet.resetJointState(self.arm, index, q, 0.0, physicsClientId=self.client)
         self._holding_effort = self._gravity_torque()
@@ -45,7 +46,7 @@ class BallOnTrayWorld:
         """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
         self._brakes = False
         self._push: np.ndarray | None = None
-        self.reset(TRAY_HOME_X)
+        self.reset(np.array(scene.home))
 
     def _find_links(self) -> None:
         count = pybullet.getNumJoints(self.arm, physicsClientId=self.client)
@@ -58,11 +59,11 @@ class BallOnTrayWorld:
                 self.arm, link, linearDamping=0, angularDamping=0, jointDamping=0, physicsClientId=self.client)
         self._release_brakes()
 
-    def _add_ball(self, ball: Ball) -> None:
+    def _add_ball(self, ball: Ball, home: tuple[float, float, float]) -> None:
         shape = pybullet.createCollisionShape(
             pybullet.GEOM_SPHERE, radius=ball.radius, physicsClientId=self.client)
         self.ball = pybullet.createMultiBody(
-            ball.mass, shape, -1, [TRAY_HOME_X, BALL_START_Y, BALL_START_Z], physicsClientId=self.client)
+            ball.mass, shape, -1, list(home), physicsClientId=self.client)
         pybullet.changeDynamics(
             self.ball, -1, lateralFriction=ball.friction, rollingFriction=0, spinningFriction=0, restitution=0,
             linearDamping=0, angularDamping=0, physicsClientId=self.client)
@@ -74,11 +75,11 @@ class BallOnTrayWorld:
         return np.array(pybullet.calculateInverseDynamics(
             self.arm, list(Q_REFERENCE), still, still, physicsClientId=self.client))
 
-    def reset(self, ball_x: float) -> None:
-        """Arm at rest at the reference joints, ball at rest above the tray at ``ball_x`` (m, base frame)."""
+    def reset(self, ball: np.ndarray) -> None:
+        """Arm at rest at the reference joints, ball at rest at ``ball`` ((3,), m, base frame)."""
         pybullet.restoreState(self._home, physicsClientId=self.client)
         pybullet.resetBasePositionAndOrientation(
-            self.ball, [ball_x, BALL_START_Y, BALL_START_Z], [0, 0, 0, 1], physicsClientId=self.client)
+            self.ball, ball.tolist(), [0, 0, 0, 1], physicsClientId=self.client)
         if self._brakes:
             self._release_brakes()
         self._push = None

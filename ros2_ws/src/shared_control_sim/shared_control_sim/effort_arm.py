@@ -6,8 +6,7 @@ import numpy as np
 from shared_control.robot.limits import DOF, TORQUE_RATE_MAX
 from shared_control.robot.model import PandaModel
 from shared_control.robot.reflex import command_violation, state_violation
-
-from .bullet import BallOnTrayWorld
+from shared_control.world import World
 
 
 class Mode(Enum):
@@ -38,7 +37,7 @@ class EffortPanda:
         limit_rate: see above.
     """
 
-    def __init__(self, world: BallOnTrayWorld, command_timeout: float = 0.1, limit_rate: bool = True):
+    def __init__(self, world: World, command_timeout: float = 0.1, limit_rate: bool = True):
         self.world = world
         self._step = TORQUE_RATE_MAX * world.dt
         self._limit_rate = limit_rate
@@ -104,7 +103,7 @@ class EffortPanda:
         self._enter(Mode.IDLE)
         return True
 
-    def reset(self, ball_x: float) -> None:
-        """Put arm and ball back (:meth:`BallOnTrayWorld.reset`), as a person would: the control ends."""
-        self.world.reset(ball_x)
+    def reset(self, ball: np.ndarray) -> None:
+        """Put arm and ball back (:meth:`World.reset`), as a person would: the control ends."""
+        self.world.reset(ball)
         self.stop()

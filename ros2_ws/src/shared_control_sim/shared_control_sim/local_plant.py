@@ -2,15 +2,16 @@
 
 from typing import Protocol
 
+import numpy as np
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
 from shared_control.plant import PlantState
+from shared_control.plugins import WORLDS, load
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.robot.model import PandaModel
-from shared_control.tasks.balance.scene import Ball
-from shared_control.tasks.balance.task import BALL_START_RANGE, BallStarts
-
-from .bullet import BallOnTrayWorld
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import BallStarts, Task
+from shared_control.world import World
 
 
 class Person(Protocol):
@@ -19,57 +20,60 @@ class Person(Protocol):
     def reset(self, seed: int | None) -> None:
         """A new episode begins."""
 
-    def moment(self, state: PlantState) -> float:
-        """M_yh for the coming period, N m, by someone who sees ``state``."""
+    def moment(self, state: PlantState) -> np.ndarray:
+        """The human's moment for the coming period, (k,), N m, by someone who sees ``state``."""
 
 
 class LocalPlant:
     """World, controller and (if there is one) a person, stepped in a loop.
 
     Args:
+        task: axes, limits, scene and ball starts.
         person: who presses keys; nobody when None.
-        moment_limit: bound of |M_y|, N m.
-        ball: the ball.
-        ball_start_range: where it is dropped, x in the base frame, m.
+        world: name of the physics (entry point of the group ``shared_control.worlds``).
     """
 
-    def __init__(self, person: Person | None = None, moment_limit: float = 20.0, ball: Ball = Ball(),
-                 ball_start_range: tuple[float, float] = BALL_START_RANGE):
-        self.world = BallOnTrayWorld(ball, CONTROL_PERIOD)
-        self.controller = ComputedTorqueController(PandaModel(), dt=CONTROL_PERIOD)
+    def __init__(self, task: Task = BALANCE, person: Person | None = None, world: str = 'bullet'):
+        self.world: World = load(WORLDS, world)(task.scene, CONTROL_PERIOD)
+        self.controller = ComputedTorqueController(PandaModel(), task.axes, dt=CONTROL_PERIOD)
         self._person = person
-        self._limit = moment_limit
-        self._starts = BallStarts(start_range=ball_start_range)
+        self._limit = task.limit
+        self._none = np.zeros(len(task.axes))
+        self._starts = BallStarts(task)
         self._state: PlantState | None = None
 
     def reset(self, seed: int | None = None) -> PlantState:
         """See :meth:`Plant.reset`."""
         if seed is not None:
             self._starts.seed(seed)
-        self.world.reset(self._starts.next())
+        self.world.reset(self.ball_start())
         if self._person is not None:
             self._person.reset(seed)
-        self._state = self._read(0.0, 0.0)
+        self._state = self._read(self._none, self._none, self._none)
         return self._state
 
-    def advance(self, m_y_agent: float) -> PlantState:
+    def ball_start(self) -> np.ndarray:
+        """Where the ball is dropped next, base frame, (3,), m."""
+        return self._starts.next()
+
+    def advance(self, agent: np.ndarray) -> PlantState:
         """See :meth:`Plant.advance`."""
         assert self._state is not None, 'reset the plant first'
-        m_y_human = 0.0 if self._person is None else self._person.moment(self._state)
-        m_y = sum_moments(m_y_agent, m_y_human, self._limit)
+        human = self._none if self._person is None else self._person.moment(self._state)
+        applied = sum_moments(agent, human, self._limit)
         for _ in range(TICKS_PER_ACTION):
-            self.tick(m_y)
-        self._state = self._read(m_y_human, m_y)
+            self.tick(applied)
+        self._state = self._read(human, agent, applied)
         return self._state
 
-    def tick(self, m_y: float) -> None:
-        """One tick of controller and physics with the moment ``m_y``, N m."""
+    def tick(self, moment: np.ndarray) -> None:
+        """One tick of controller and physics with the summed moment, (k,), N m."""
         q, qd = self.world.joint_state()
-        self.world.step(self.controller.torque(q, qd, self.world.effort, m_y))
+        self.world.step(self.controller.torque(q, qd, self.world.effort, moment))
 
-    def _read(self, m_y_human: float, m_y_applied: float) -> PlantState:
+    def _read(self, human: np.ndarray, agent: np.ndarray, applied: np.ndarray) -> PlantState:
         position, _, velocity, _ = self.world.ball_state()
-        return PlantState(self.world.joint_state()[0], position, velocity, m_y_human, m_y_applied)
+        return PlantState(self.world.joint_state()[0], position, velocity, human, agent, applied)
 
     def close(self) -> None:
         """See :meth:`Plant.close`."""

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-from shared_control.env import BalanceEnv
-from shared_control.tasks.balance.settings import DEFAULT_TASK, THESIS_TASK
+from shared_control.env import SharedControlEnv
+from shared_control.tasks.balance import THESIS
 from shared_control_sim.local_plant import LocalPlant
 from stable_baselines3.common.env_checker import check_env as check_env_for_sb3
 
 
 @pytest.fixture
 def env():
-    env = BalanceEnv(LocalPlant())
+    env = SharedControlEnv(LocalPlant())
     yield env
     env.close()
 
@@ -45,17 +45,17 @@ def test_episode_ends_after_its_time(env):
         _, _, terminated, truncated, info = env.step(np.array([-0.26]))
         assert not terminated
         assert truncated == (step == 749)
-    assert info['m_y_agent'] == pytest.approx(-0.26 * 8.0)
+    assert info['agent'][0] == pytest.approx(-0.26 * 8.0)
 
 
 def test_a_fall_terminates_and_costs():
-    env = BalanceEnv(LocalPlant(moment_limit=105.0), THESIS_TASK)
+    env = SharedControlEnv(LocalPlant(THESIS), THESIS)
     env.reset(seed=0)
     for _ in range(750):
         _, reward, terminated, truncated, info = env.step(np.array([1.0]))
         if terminated:
             break
-    assert terminated and not truncated and info['fallen'] and reward == -5000.0
+    assert terminated and not truncated and info['failed'] and reward == -5000.0
     env.close()
 
 
@@ -66,12 +66,12 @@ class SteadyHand:
         pass
 
     def moment(self, state):
-        return 15.0
+        return np.array([15.0])
 
 
 def test_moments_are_told_apart_and_their_sum_is_limited():
-    env = BalanceEnv(LocalPlant(SteadyHand(), moment_limit=DEFAULT_TASK.moment_limit))
+    env = SharedControlEnv(LocalPlant(person=SteadyHand()))
     env.reset(seed=0)
     info = env.step(np.array([1.0]))[-1]
-    assert (info['m_y_agent'], info['m_y_human'], info['m_y_applied']) == (8.0, 15.0, 20.0)
+    assert (info['agent'][0], info['human'][0], info['applied'][0]) == (8.0, 15.0, 20.0)
     env.close()

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.robot.model import GRAVITY, PandaModel, pitch
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control.tasks.balance import BALANCE
+from shared_control_sim.bullet import BulletWorld
 
 
 @pytest.fixture
 def world():
-    world = BallOnTrayWorld()
+    world = BulletWorld()
     yield world
     world.close()
 
@@ -19,14 +20,19 @@ def model():
     return PandaModel()
 
 
+def start(x):
+    """A ball above the middle of the tray's width."""
+    return np.array([x, *BALANCE.scene.home[1:]])
+
+
 def run(world, model, ball_x, moments):
     """States of an episode with one moment a tick."""
     controller = ComputedTorqueController(model)
-    world.reset(ball_x)
+    world.reset(start(ball_x))
     trace = []
     for m_y in moments:
         q, qd = world.joint_state()
-        world.step(controller.torque(q, qd, world.effort, m_y))
+        world.step(controller.torque(q, qd, world.effort, np.array([m_y])))
         trace.append([*q, *qd, *world.ball_state()[0], *world.ball_state()[2]])
     return np.array(trace)
 
@@ -34,13 +40,13 @@ def run(world, model, ball_x, moments):
 def test_ball_rolls_at_five_sevenths_of_g_sin_theta(world, model):
     """A solid sphere that rolls without slipping: a = 5/7 g sin(theta), on a tray tilted and then held."""
     controller = ComputedTorqueController(model)
-    world.reset(-0.6)
+    world.reset(start(-0.6))
     for tick in range(1200):
         q, qd = world.joint_state()
-        world.step(controller.torque(q, qd, world.effort, 5.0))
+        world.step(controller.torque(q, qd, world.effort, np.array([5.0])))
         if tick == 599:
-            start = world.ball_state()[2], pitch(model.tray_pose(world.joint_state()[0])[1])
-    (v0, *_), pitch0 = start
+            early = world.ball_state()[2], pitch(model.tray_pose(world.joint_state()[0])[1])
+    (v0, *_), pitch0 = early
     v1 = world.ball_state()[2][0]
     pitch1 = pitch(model.tray_pose(world.joint_state()[0])[1])
     acceleration = (v1 - v0) / 0.6
@@ -64,7 +70,7 @@ def test_an_episode_does_not_depend_on_what_came_before(world, model):
 
 
 def test_two_worlds_agree_bit_for_bit(world, model):
-    other = BallOnTrayWorld()
+    other = BulletWorld()
     moments = 8.0 * np.cos(np.arange(1000) / 70)
     np.testing.assert_array_equal(run(world, model, -0.4, moments), run(other, model, -0.4, moments))
     other.close()
@@ -86,12 +92,12 @@ def test_brakes_hold_the_arm(world):
 
 def test_a_push_moves_the_tray_and_ends(world, model):
     controller = ComputedTorqueController(model)
-    world.reset(-0.485)
+    world.reset(start(-0.485))
     height = []
     for tick in range(1000):
         world.push(np.array([0.0, 0.0, -50.0 if tick < 500 else 0.0]))
         q, qd = world.joint_state()
-        world.step(controller.torque(q, qd, world.effort, 0.0))
+        world.step(controller.torque(q, qd, world.effort, np.zeros(1)))
         height.append(model.tray_pose(q)[0][2])
     assert height[499] < height[0] - 0.003
     assert height[-1] > height[499] + 0.001

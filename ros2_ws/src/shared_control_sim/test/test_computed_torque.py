@@ -6,10 +6,13 @@ from shared_control.control.computed_torque import ComputedTorqueController, lim
 from shared_control.robot.limits import DOF, TORQUE_MAX
 from shared_control.robot.model import PandaModel, pitch
 from shared_control.robot.posture import GAINS, Q_REFERENCE
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control.tasks.balance import BALANCE
+from shared_control_sim.bullet import BulletWorld
 
 DT = 0.001
 FAR = np.full(DOF, 1e9)
+FIVE = np.array([5.0])
+HOME = np.array(BALANCE.scene.home)
 
 
 @pytest.fixture(scope='module')
@@ -19,7 +22,7 @@ def model():
 
 @pytest.fixture(scope='module')
 def world():
-    world = BallOnTrayWorld()
+    world = BulletWorld()
     yield world
     world.close()
 
@@ -27,7 +30,7 @@ def world():
 def unlimited(controller, q, qd, m_y, **reference):
     """The torque before limits: asked for from everywhere at once, it is where the two bounds meet."""
     controller._rate = np.inf
-    return controller.torque(q, qd, np.zeros(DOF), m_y, **reference)
+    return controller.torque(q, qd, np.zeros(DOF), np.atleast_1d(m_y), **reference)
 
 
 def test_implicit_pd_solves_its_equation(model):
@@ -38,7 +41,7 @@ def test_implicit_pd_solves_its_equation(model):
         q = Q_REFERENCE + random.normal(0, 0.002, DOF)
         qd = random.normal(0, 0.002, DOF)
         m_y = random.uniform(-2, 2)
-        torque = unlimited(ComputedTorqueController(model, gains), q, qd, m_y)
+        torque = unlimited(ComputedTorqueController(model, gains=gains), q, qd, m_y)
         nonlinear = model.nonlinear_effects(q, qd).copy()
         acceleration = np.linalg.solve(model.mass_matrix(q), torque - nonlinear)
         tau_pd = gains.kp * (Q_REFERENCE - q - qd * DT) - gains.kd * (qd + acceleration * DT)
@@ -48,7 +51,7 @@ def test_implicit_pd_solves_its_equation(model):
 
 def test_holds_still_at_the_reference(model):
     torque = ComputedTorqueController(model).torque(
-        Q_REFERENCE, np.zeros(DOF), model.gravity(Q_REFERENCE).copy(), 0.0)
+        Q_REFERENCE, np.zeros(DOF), model.gravity(Q_REFERENCE).copy(), np.zeros(1))
     np.testing.assert_allclose(torque, model.gravity(Q_REFERENCE), atol=1e-12)
 
 
@@ -70,11 +73,11 @@ def test_torque_and_its_rate_are_limited():
 @pytest.mark.parametrize('gains', GAINS)
 def test_all_gains_are_stable_on_the_simulated_arm(model, world, gains):
     """An explicit PD shakes the arm to its torque limits with each of these."""
-    controller = ComputedTorqueController(model, GAINS[gains])
-    world.reset(-0.485)
+    controller = ComputedTorqueController(model, gains=GAINS[gains])
+    world.reset(HOME)
     for tick in range(1500):
         q, qd = world.joint_state()
-        world.step(controller.torque(q, qd, world.effort, 5.0 if tick < 300 else 0.0))
+        world.step(controller.torque(q, qd, world.effort, FIVE if tick < 300 else 0.0 * FIVE))
     q, qd = world.joint_state()
     assert np.abs(qd).max() < 0.05
     assert np.abs(q - Q_REFERENCE).max() < 0.1
@@ -83,11 +86,11 @@ def test_all_gains_are_stable_on_the_simulated_arm(model, world, gains):
 def test_a_keystroke_tilts_the_tray_as_measured(model, world):
     """5 N m: 2.3 degrees quickly, creeping to 3.3 in 3 s (design, section 2)."""
     controller = ComputedTorqueController(model)
-    world.reset(-0.485)
+    world.reset(HOME)
     tilt = {}
     for tick in range(3000):
         q, qd = world.joint_state()
         tilt[tick] = np.rad2deg(pitch(model.tray_pose(q)[1]))
-        world.step(controller.torque(q, qd, world.effort, 5.0))
+        world.step(controller.torque(q, qd, world.effort, FIVE))
     assert tilt[200] == pytest.approx(2.3, abs=0.15)
     assert tilt[2999] == pytest.approx(3.3, abs=0.15)

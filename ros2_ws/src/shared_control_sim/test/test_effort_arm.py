@@ -7,8 +7,8 @@ from shared_control.robot.limits import Q_MAX, QD_MAX, TORQUE_MAX
 from shared_control.robot.model import PandaModel
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control.robot.reflex import command_violation, state_violation
-from shared_control.tasks.balance.scene import TRAY_HOME_X
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control.tasks.balance import BALANCE
+from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
 
 STILL = np.zeros(7)
@@ -22,7 +22,7 @@ def model():
 
 @pytest.fixture
 def world():
-    world = BallOnTrayWorld()
+    world = BulletWorld()
     yield world
     world.close()
 
@@ -43,7 +43,7 @@ def test_every_limit_has_its_name():
 
 
 def test_it_carries_its_own_weight_and_stays_within_a_millimetre_on_zero_torques(robot, world, model):
-    world.reset(ball_x=2.0)  # beside the tray: the ball is not the robot's own weight
+    world.reset(np.array([2.0, 0.0, 0.94]))  # beside the tray: the ball is not the robot's own weight
     for _ in range(200):
         robot.tick(STILL)
     assert robot.mode is Mode.MOVE
@@ -100,14 +100,15 @@ def test_late_and_lost_torques_hold_the_arm_within_its_limits(world, model):
     random = np.random.default_rng(4)
     robot = EffortPanda(world)
     controller = ComputedTorqueController(model, horizon=0.004, robot_compensates_gravity=True)
-    robot.reset(TRAY_HOME_X)
+    robot.reset(np.array(BALANCE.scene.home))
     on_their_way: list[tuple[int, np.ndarray]] = []
     for tick in range(4000):
         if tick % 20 == 0:
             m_y = -2.1 + random.normal(0.0, 1.0)
         q, qd = world.joint_state()
         if random.random() > 0.01:
-            on_their_way.append((tick + random.integers(0, 4), controller.torque(q, qd, robot.torque, m_y)))
+            torque = controller.torque(q, qd, robot.torque, np.atleast_1d(m_y))
+            on_their_way.append((tick + random.integers(0, 4), torque))
         arrived = [torque for due, torque in on_their_way if due <= tick]
         on_their_way = [(due, torque) for due, torque in on_their_way if due > tick]
         robot.tick(arrived[-1] if arrived else None)

@@ -7,7 +7,7 @@ from panda_tray_description import URDF_PATH
 from shared_control.robot.limits import DOF, JOINT_NAMES, Q_MAX, Q_MIN, QD_MAX, TORQUE_MAX
 from shared_control.robot.model import PandaModel, manipulability, pitch
 from shared_control.robot.posture import Q_REFERENCE
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.bullet import BulletWorld
 
 
 @pytest.fixture(scope='module')
@@ -17,7 +17,7 @@ def model():
 
 @pytest.fixture(scope='module')
 def world():
-    world = BallOnTrayWorld()
+    world = BulletWorld()
     yield world
     world.close()
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
+from shared_control.keys import Key, KeyMoment
 from shared_control.rates import POLICY_PERIOD
-from shared_control.teaching.keys import Key, KeyMoment
 from shared_control.teaching.profiles import EXPERT, PROFILES, in_episode, profile
 from shared_control.teaching.tutor import TILT_OF_MOMENT, Picture, SimulatedTutor
 from shared_control_sim.local_plant import LocalPlant
@@ -22,8 +22,8 @@ def presses(tutor, picture_at, seconds=5.0):
     for step in range(round(seconds / POLICY_PERIOD)):
         now = step * POLICY_PERIOD
         picture = picture_at(now)
-        picture = replace(picture, pitch=picture.pitch + TILT_OF_MOMENT * keys.m_y)
-        key = tutor.key(now, picture, keys.m_y)
+        picture = replace(picture, pitch=picture.pitch + TILT_OF_MOMENT * float(keys.moment[0]))
+        key = tutor.key(now, picture, float(keys.moment[0]))
         if key is not None:
             keys.press(key)
             pressed.append((now, key))
@@ -58,7 +58,7 @@ def test_lets_go_of_a_ball_at_rest_in_the_centre():
     keys = KeyMoment()
     for _, key in pressed:
         keys.press(key)
-    assert keys.m_y == 0.0
+    assert float(keys.moment[0]) == 0.0
     assert pressed[-1][0] < 4.5
 
 
@@ -93,13 +93,13 @@ def test_a_seed_makes_the_same_tutor():
 
 def episode(robot, tutor, seed):
     """Position errors (m) and M_yh (N m) of an episode."""
-    env = BalanceEnv(LocalPlant(tutor))
+    env = SharedControlEnv(LocalPlant(person=tutor))
     observation, _ = env.reset(seed=seed)
     errors, moments = [], []
     for _ in range(400):
         observation, _, _, _, info = env.step(robot(observation))
         errors.append(info['state'].position_error)
-        moments.append(info['m_y_human'])
+        moments.append(info['human'][0])
     env.close()
     return np.array(errors), np.array(moments)
 

@@ -4,34 +4,36 @@ import numpy as np
 import pytest
 from shared_control.plant import PlantInterrupted, PlantState
 from shared_control.robot.posture import Q_REFERENCE
-from shared_control.tasks.balance.settings import DEFAULT_TASK
+from shared_control.tasks.balance import BALANCE
 
 __all__ = ['fake_plant', 'good_robot']
 
 
 class FakePlant:
-    """A ball that rolls as the moment says; a person who holds ``m_y_human``. Quick."""
+    """A ball that rolls as the moment says; a person who holds ``human`` N m. Quick."""
 
-    def __init__(self, m_y_human=0.0, falls_at=None, interrupted_at=None):
-        self.m_y_human, self.falls_at, self.interrupted_at = m_y_human, falls_at, interrupted_at
+    def __init__(self, human=0.0, falls_at=None, interrupted_at=None):
+        self.human, self.falls_at, self.interrupted_at = human, falls_at, interrupted_at
 
     def reset(self, seed):
         self._x = float(np.random.default_rng(seed).uniform(-0.6, -0.3))
         self._v, self._step = 0.0, 0
-        return self._state()
+        return self._state(np.zeros(1))
 
-    def advance(self, m_y_agent):
+    def advance(self, agent):
         self._step += 1
         if self._step == self.interrupted_at:
             self.interrupted_at = None
             raise PlantInterrupted('gone')
-        self._v = float(np.clip(self._v + 0.02 * 0.05 * (m_y_agent + self.m_y_human), -0.5, 0.5))
+        self._v = float(np.clip(self._v + 0.02 * 0.05 * (agent[0] + self.human), -0.5, 0.5))
         self._x += 0.02 * self._v
-        return self._state()
+        return self._state(agent)
 
-    def _state(self):
+    def _state(self, agent):
         z = 0.0 if self._step == self.falls_at else 0.94
-        return PlantState(Q_REFERENCE, (self._x, 0.0, z), (self._v, 0.0, 0.0), self.m_y_human, self.m_y_human)
+        return PlantState(
+            Q_REFERENCE, (self._x, 0.0, z), (self._v, 0.0, 0.0), np.array([self.human]), agent,
+            agent + self.human)
 
     def close(self):
         pass
@@ -47,8 +49,8 @@ def fake_plant():
 def good_robot():
     """A policy that tilts the tray as a spring and a damper would."""
     def act(observation):
-        error, velocity, _ = observation * DEFAULT_TASK.observation_scales
+        error, velocity, _ = observation * BALANCE.observation_scales
         m_y = -2.1 + (0.6 * error - 0.45 * velocity) / 0.008
-        return np.clip([m_y / DEFAULT_TASK.action_scale], -1, 1)
+        return np.clip([m_y / BALANCE.action_scale], -1, 1)
 
     return act

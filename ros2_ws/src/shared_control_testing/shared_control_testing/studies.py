@@ -40,9 +40,9 @@ def made_result(job: Job, random: np.random.Generator) -> RunResult:
 def _episode(number: int, job: Job, random: np.random.Generator) -> dict:
     human = max(0.0, 4 - number / 3 + random.normal(0, 0.5)) if job.condition.taught else 0.0
     return {'episode': float(number), 'phase': 'teach', 'steps': 750.0, 'seconds': 15.0, 'learn_seconds': 0.5,
-            'return': 500 - 2000 / number + random.normal(0, 80), 'fallen': 0.0, 'mean_abs_m_y_human': human,
-            'mean_abs_m_y_agent': 2.0 + random.normal(0, 0.3), 'std_m_y_human': human,
-            'std_m_y_agent': 3.0, 'human_share': human / 6, 'intervention_rate': human / 5}
+            'return': 500 - 2000 / number + random.normal(0, 80), 'fallen': 0.0, 'mean_abs_human': human,
+            'mean_abs_agent': 2.0 + random.normal(0, 0.3), 'std_human': human,
+            'std_agent': 3.0, 'human_share': human / 6, 'intervention_rate': human / 5}
 
 
 def _test(name: str, random: np.random.Generator, good: bool, episodes: int, length: float) -> ProtocolResult:
@@ -54,6 +54,7 @@ def _test(name: str, random: np.random.Generator, good: bool, episodes: int, len
     if not good:
         fallen[0] = True
         error[0, len(seconds) // 2:] = velocity[0, len(seconds) // 2:] = np.nan
-    tracks = {'position_error': error, 'velocity': -velocity, 'velocity_error': velocity, 'm_y_agent': 10 * error,
+    tracks = {'position_error': error, 'velocity': -velocity, 'velocity_error': velocity, 'agent_moment': 10 * error,
               'manipulability': np.full_like(error, 0.074)}
-    return ProtocolResult(name, seconds, **{track: tracks[track] for track in TRACKS}, fallen=fallen)
+    return ProtocolResult(name, seconds, **{track: tracks[track] for track in TRACKS}, fallen=fallen,
+                          success=~fallen & good)

@@ -4,7 +4,7 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.teaching.keys import Key
+from shared_control.keys import BUTTONS, Key
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 
@@ -20,7 +20,7 @@ class KeyPublisher:
 
     def __init__(self, node: Node):
         self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * len(Key))
+        self._joy = Joy(buttons=[0] * BUTTONS)
         self._joy.header.frame_id = SOURCE
         self._published_at = 0.0
         self.presses = 0
@@ -28,7 +28,7 @@ class KeyPublisher:
     def press(self, key: Key, stamp_ns: int) -> None:
         """A key goes down."""
         self.presses += 1
-        self._joy.buttons = [int(k is key) for k in Key]
+        self._joy.buttons = [int(button == key) for button in range(BUTTONS)]
         self._publish(stamp_ns)
 
     def update(self, stamp_ns: int) -> None:
@@ -42,7 +42,7 @@ class KeyPublisher:
 
     def release(self, stamp_ns: int) -> None:
         """All keys are up."""
-        self._joy.buttons = [0] * len(Key)
+        self._joy.buttons = [0] * BUTTONS
         self._publish(stamp_ns)
 
     def _publish(self, stamp_ns: int) -> None:

@@ -75,7 +75,7 @@ class SimTutorNode:
                 self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:
             try:
-                self._m_y_human = moment_of(wrench)
+                self._m_y_human = float(moment_of(wrench)[0])
             except ValueError as error:
                 self._complain(self._human, str(error))
         if self._lesson.phase != 'teach' or self._q is None:
@@ -85,7 +85,7 @@ class SimTutorNode:
             self._complain(self._balls, f'x is {position.x} m, its velocity {velocity.x} m/s')
             return
         picture = self._tutor.look(PlantState(
-            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), 0.0, 0.0))
+            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), *[np.zeros(1)] * 3))
         key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._m_y_human)
         if key is not None:
             self._keys.press(key, self._stamp_ns)

@@ -7,10 +7,10 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
+from shared_control.keys import Key, KeyMoment, KeyPresses
 from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.posture import Q_REFERENCE
-from shared_control.tasks.balance.scene import TRAY_HOME_X
-from shared_control.teaching.keys import Key, KeyMoment, KeyPresses
+from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 from std_msgs.msg import Int32, String
@@ -47,8 +47,8 @@ class Scene:
             for message in (joints, ball, wrench):
                 message.header.frame_id = contract.BASE_FRAME
                 set_ns(message.header.stamp, self.now_ns)
-            ball.pose.pose.position.x = TRAY_HOME_X - error
-            wrench.wrench.torque.y = self.moment.m_y
+            ball.pose.pose.position.x = BALANCE.scene.home[0] - error
+            wrench.wrench.torque.y = float(self.moment.moment[0])
             self.joints.publish(joints)
             self.human.publish(wrench)
             self.balls.publish(ball)

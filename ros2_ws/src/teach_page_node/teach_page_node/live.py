@@ -6,7 +6,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.teaching.keys import Key, KeyPresses
+from shared_control.keys import BUTTONS, Key, KeyPresses
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.watching.lesson import Lesson
@@ -41,10 +41,10 @@ class LiveDesk:
         self._heard = Polled(node, contract.KEYS, depth=50)
         self._presses: dict[str, KeyPresses] = {}
         self._hand = ''
-        self._lit_until = [0.0] * len(Key)
+        self._lit_until = [0.0] * BUTTONS
         self._history = History()
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * len(Key))
+        self._joy = Joy(buttons=[0] * BUTTONS)
         self._joy.header.frame_id = SOURCE
         self._requests = PageRequests(node, self._tell)
         self._background = Background(node)
@@ -96,8 +96,8 @@ class LiveDesk:
                 continue  # teleop_key_node complains
             if pressed:
                 self._hand = source
-            for key in Key:
-                if joy.buttons[key]:
+            for key, down in enumerate(joy.buttons[:BUTTONS]):
+                if down:
                     self._lit_until[key] = now + LIT_FOR
 
     def press(self, buttons: list[int]) -> None:
@@ -108,7 +108,7 @@ class LiveDesk:
 
     def let_go(self) -> None:
         """See :class:`Desk`. The space key says so at once; silence would say it after half a second."""
-        released = [0] * len(Key)
+        released = [0] * BUTTONS
         space = released.copy()
         space[Key.SPACE] = 1
         for buttons in (released, space, released):

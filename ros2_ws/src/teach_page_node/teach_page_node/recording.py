@@ -2,8 +2,8 @@
 
 import numpy as np
 from shared_control import contract
+from shared_control.keys import BUTTONS
 from shared_control.robot.model import PandaModel, pitch
-from shared_control.teaching.keys import Key
 from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series, Wrenches
 
@@ -64,7 +64,7 @@ class Recording:
         """Keys that are lit, and the source of the latest press."""
         last = _before(self._press_ns, now_ns)
         first = np.searchsorted(self._press_ns, now_ns - LIT_FOR * 1e9)
-        lit = [0] * len(Key)
+        lit = [0] * BUTTONS
         if last is None:
             return lit, ''
         for press in self._bag.presses[first:last + 1]:

@@ -4,9 +4,10 @@ With a terminal it reads the keys there as well and shows the lesson: arrows or 
 q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves the ball to the left of the picture.
 """
 
+import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.teaching.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -50,7 +51,7 @@ class TeleopKeyNode:
 
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
-        self._sources = KeySources(KeyMoment(keystroke, self._moment_limit), self._timeout)
+        self._sources = KeySources(KeyMoment(step=keystroke, limit=self._moment_limit), self._timeout)
         self._wrench = base_wrench()
         self._publisher = node.create_publisher(
             contract.HUMAN_WRENCH.msg_type, contract.HUMAN_WRENCH.name, contract.HUMAN_WRENCH.qos)
@@ -131,7 +132,7 @@ class TeleopKeyNode:
 
     def _publish(self, m_y: float, now_ns: int) -> None:
         set_ns(self._wrench.header.stamp, now_ns)
-        set_moment(self._wrench, m_y)
+        set_moment(self._wrench, np.array([m_y]))
         self._publisher.publish(self._wrench)
 
     def _report(self) -> None:

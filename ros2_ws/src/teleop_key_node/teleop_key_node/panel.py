@@ -6,7 +6,7 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.teaching.keys import Key
+from shared_control.keys import BUTTONS, Key
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.lesson import Lesson
@@ -50,7 +50,7 @@ class Panel:
         self.terminal = terminal
         self._keyboard = Keyboard()
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * len(Key))
+        self._joy = Joy(buttons=[0] * BUTTONS)
         self._joy.header.frame_id = SOURCE
         self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
         self._ticks = 0

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from shared_control.teaching.keys import KeyMoment, KeyPresses
+from shared_control.keys import KeyMoment, KeyPresses
 
 
 class KeySources:
@@ -26,7 +26,7 @@ class KeySources:
     @property
     def m_y(self) -> float:
         """M_yh, N m."""
-        return self._moment.m_y
+        return float(self._moment.moment[0])
 
     @property
     def is_active(self) -> bool:
@@ -53,7 +53,7 @@ class KeySources:
             self._moment.press(key)
             self._holding.add(source)
             self.last_pressed = source
-        if self._moment.m_y == 0.0:
+        if not self._moment.moment.any():
             self._holding.clear()
 
     def drop_silent(self, now_ns: int) -> list[str]:

@@ -1,7 +1,7 @@
 """Bytes to strokes, and states of several sources to one moment."""
 
 import pytest
-from shared_control.teaching.keys import KeyMoment
+from shared_control.keys import KeyMoment
 from teleop_key_node.keyboard import Keyboard, Stroke
 from teleop_key_node.sources import KeySources
 

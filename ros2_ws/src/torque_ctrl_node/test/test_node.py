@@ -93,7 +93,7 @@ class Robot:
 
 
 def expected(m_y):
-    return ComputedTorqueController(PandaModel()).torque(Q_REFERENCE, np.zeros(7), GRAVITY, m_y)
+    return ComputedTorqueController(PandaModel()).torque(Q_REFERENCE, np.zeros(7), GRAVITY, np.array([m_y]))
 
 
 @pytest.fixture(scope='class')

@@ -59,7 +59,7 @@ class TorqueCtrlNode:
             'controller/enable.')
 
         self._controller = ComputedTorqueController(
-            PandaModel(), GAINS[gains], CONTROL_PERIOD, horizon, robot_compensates_gravity=compensates)
+            PandaModel(), gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon, robot_compensates_gravity=compensates)
         self._reader = JointStateReader()
         self._joint_states = Polled(node, contract.JOINT_STATES, raw=True)
         self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)
@@ -133,12 +133,12 @@ class TorqueCtrlNode:
         self._human.update(now_ns)
         self._agent.update(now_ns)
         human, agent = self._human.moment(now_ns), self._agent.moment(now_ns)
-        m_y = sum_moments(agent, human, self._moment_limit)
-        self._torque[:] = self._controller.torque(q, qd, effort, m_y)
+        applied = sum_moments(agent, human, self._moment_limit)
+        self._torque[:] = self._controller.torque(q, qd, effort, applied)
         self._command_publisher.publish(bytes(self._command))
         self._answered_ns = now_ns
         self._diagnostics.tick()
-        self._applied.publish(now_ns, m_y, human, agent, self._ticks % TICKS_PER_POLL == 0)
+        self._applied.publish(now_ns, applied, human, agent, self._ticks % TICKS_PER_POLL == 0)
 
     def _stand_by(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> None:
         """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""

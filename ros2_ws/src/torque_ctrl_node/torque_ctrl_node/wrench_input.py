@@ -2,6 +2,7 @@
 
 import time
 
+import numpy as np
 from rclpy.node import Node
 from shared_control.control.moments import MomentSource
 from shared_control_ros.contract import Topic
@@ -23,7 +24,7 @@ class WrenchInput:
         self._node = node
         self._input = Polled(node, topic)
         self._timeout = timeout
-        self._source = MomentSource()
+        self._source = MomentSource(1)
         self.topic_name = self._input.topic_name
 
     def update(self, now_ns: int) -> None:
@@ -32,13 +33,13 @@ class WrenchInput:
         if message is None:
             return
         try:
-            source = MomentSource(moment_of(message), to_ns(message.header.stamp))
-            self._check_age(source.age(now_ns))
+            moment, stamp_ns = moment_of(message), to_ns(message.header.stamp)
+            self._check_age((now_ns - stamp_ns) * 1e-9)
         except ValueError as error:
             self._node.get_logger().error(
                 f'dropped a message on {self.topic_name}: {error}', throttle_duration_sec=1.0)
-        else:
-            self._source = source
+            return
+        self._source.moment, self._source.stamp_ns = moment, stamp_ns
 
     def _check_age(self, age: float) -> None:
         if age > self._timeout:
@@ -47,8 +48,8 @@ class WrenchInput:
             raise ValueError(
                 f'its stamp is {-age:.3f} s ahead of /joint_states: do both use the same clock (use_sim_time)?')
 
-    def moment(self, now_ns: int) -> float:
-        """The moment that counts at ``now_ns``, N m."""
+    def moment(self, now_ns: int) -> np.ndarray:
+        """The moment that counts at ``now_ns``, (1,), N m."""
         return self._source.at(now_ns, self._timeout)
 
     def problem(self, now_ns: int) -> str:

@@ -7,8 +7,8 @@ from ..robot.limits import DOF, TORQUE_RATE_MAX, clamp_torque
 from ..robot.model import PandaModel
 from ..robot.posture import GAINS, Q_REFERENCE, Gains
 
-WRENCH_ROW = 4
-"""Row of the Jacobian that belongs to M_y in ``W_tr = [0 0 0 0 M_y 0]``."""
+M_Y: tuple[int, ...] = (4,)
+"""The row of the wrench that the thesis shares: ``W_tr = [0 0 0 0 M_y 0]``."""
 
 
 class ComputedTorqueController:
@@ -35,6 +35,7 @@ class ComputedTorqueController:
 
     Args:
         model: the robot.
+        axes: rows of the wrench at the tray (fx, fy, fz, mx, my, mz) that the moments act along, (k,).
         gains: PD gains.
         dt: period of the control loop, s.
         horizon: h, s; dt when not given.
@@ -44,15 +45,17 @@ class ComputedTorqueController:
             and out of the prediction. C(q, qd) qd stays, as in libfranka's own examples.
     """
 
-    def __init__(self, model: PandaModel, gains: Gains = GAINS['task'], dt: float = 0.001,
-                 horizon: float | None = None, q_reference: np.ndarray = Q_REFERENCE, compensate_nonlinear: bool = True,
+    def __init__(self, model: PandaModel, axes: tuple[int, ...] = M_Y, gains: Gains = GAINS['task'],
+                 dt: float = 0.001, horizon: float | None = None, q_reference: np.ndarray = Q_REFERENCE,
+                 compensate_nonlinear: bool = True,
                  robot_compensates_gravity: bool = False):
         self._model = model
         self._horizon = dt if horizon is None else horizon
         self._implicit = pin.Model(model.pin_model)
         self._implicit.armature = gains.kd * self._horizon
         self._implicit_data = self._implicit.createData()
-        self._jacobian_row = self._implicit_data.J[WRENCH_ROW]  # a view
+        self._jacobian_rows = [self._implicit_data.J[row] for row in axes]  # views
+        self._no_moment = np.zeros(len(axes))
         self._kp = gains.kp
         self._kd = gains.kd
         self._damping = gains.kp * self._horizon + gains.kd
@@ -61,7 +64,7 @@ class ComputedTorqueController:
         self._compensate = compensate_nonlinear
         self._robot_compensates_gravity = robot_compensates_gravity
 
-    def torque(self, q: np.ndarray, qd: np.ndarray, effort: np.ndarray, m_y: float,
+    def torque(self, q: np.ndarray, qd: np.ndarray, effort: np.ndarray, moment: np.ndarray,
                q_reference: np.ndarray | None = None, qd_reference: np.ndarray | None = None) -> np.ndarray:
         """The torque to command, (7,), N m.
 
@@ -69,7 +72,7 @@ class ComputedTorqueController:
             q: joint positions, (7,), rad.
             qd: joint velocities, (7,), rad/s.
             effort: the torque that the robot was last commanded, (7,), N m.
-            m_y: moment about base y at the tray, N m.
+            moment: at the tray along the controller's axes, (k,), N m.
             q_reference: where to be at the end of the tick, rad; the constructor's when not given.
             qd_reference: how fast, rad/s; at rest when not given.
         """
@@ -77,7 +80,9 @@ class ComputedTorqueController:
         # M + K_d h. This also fills in the Jacobian in the base frame; a moment acts alike on all of the tray's points.
         pin.crba(self._implicit, self._implicit_data, q, pin.Convention.WORLD)
         pin.cholesky.decompose(self._implicit, self._implicit_data)
-        wanted = self._kp * (q_reference - q) - self._damping * qd + self._jacobian_row * m_y
+        wanted = self._kp * (q_reference - q) - self._damping * qd
+        for row, component in zip(self._jacobian_rows, moment, strict=True):
+            wanted += row * component
         if qd_reference is not None:
             wanted += self._kd * qd_reference
         if not self._compensate:
@@ -90,7 +95,7 @@ class ComputedTorqueController:
 
     def damping_torque(self, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> np.ndarray:
         """The torque that brings the arm to rest wherever it is, (7,), N m: K_d alone, with what compensates weight."""
-        return self.torque(q, qd, effort, 0.0, q_reference=q + qd * self._horizon)
+        return self.torque(q, qd, effort, self._no_moment, q_reference=q + qd * self._horizon)
 
 
 def limit_torque(torque: np.ndarray, previous: np.ndarray, step: np.ndarray | float) -> np.ndarray:

@@ -1,6 +1,6 @@
 """What becomes of the moments of human and agent before they reach the arm."""
 
-from dataclasses import dataclass
+import numpy as np
 
 FADE_TIME = 0.1
 """How long the moment of a silent source takes to fade to nothing, s."""
@@ -18,23 +18,27 @@ def freshness(age: float, timeout: float) -> float:
     return min(max(1.0 - (age - timeout) / FADE_TIME, 0.0), 1.0)
 
 
-def sum_moments(m_y_agent: float, m_y_human: float, limit: float) -> float:
-    """M_y = M_yai + M_yh (3.3), N m, kept within ``limit``."""
-    return min(max(m_y_agent + m_y_human, -limit), limit)
+def sum_moments(agent: np.ndarray, human: np.ndarray, limit: np.ndarray) -> np.ndarray:
+    """The sum of both moments (3.3), each axis kept within ``limit``; all (k,), N m."""
+    return np.minimum(np.maximum(agent + human, -limit), limit)
 
 
-@dataclass
 class MomentSource:
-    """The last moment that one source (human or agent) sent, and when."""
+    """The last moment that one source (human or agent) sent, and when.
 
-    m_y: float = 0.0
-    """N m"""
-    stamp_ns: int = 0
+    Args:
+        size: number of the task's axes, k.
+    """
+
+    def __init__(self, size: int):
+        self.moment = np.zeros(size)
+        """(k,), N m"""
+        self.stamp_ns = 0
 
     def age(self, now_ns: int) -> float:
         """How old it is at ``now_ns``, s; negative when its stamp is ahead."""
         return (now_ns - self.stamp_ns) * 1e-9
 
-    def at(self, now_ns: int, timeout: float) -> float:
-        """The moment that counts at ``now_ns``, N m: nothing when its stamp is off by ``timeout`` seconds and more."""
-        return self.m_y * freshness(self.age(now_ns), timeout)
+    def at(self, now_ns: int, timeout: float) -> np.ndarray:
+        """The moment that counts at ``now_ns``, (k,), N m: see :func:`freshness`."""
+        return self.moment * freshness(self.age(now_ns), timeout)

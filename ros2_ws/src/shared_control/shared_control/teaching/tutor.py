@@ -3,13 +3,14 @@
 import math
 from collections import deque
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key, KeyMoment
 from ..plant import PlantState
 from ..rates import POLICY_PERIOD
 from ..robot.model import PandaModel, pitch
-from .keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key, KeyMoment
 from .profiles import TutorProfile, in_episode
 
 BALL_ACCELERATION = 5.0 / 7.0 * 9.81
@@ -36,6 +37,8 @@ PATIENCE_SECONDS = 5.0
 
 _STREAM = 1
 """Keeps the tutor's random numbers apart from the ball starts of the same seed."""
+
+_ANY_KEY: Any = [None, Key.LEFT, Key.RIGHT, Key.SPACE]
 
 ROUNDING = 1e-6
 """Of times, s."""
@@ -112,13 +115,13 @@ class SimulatedTutor:
         self._wearing = 0.0
         self._may_press_at = 0.0
 
-    def moment(self, state: PlantState) -> float:
-        """M_yh for the coming policy period, N m (see ``Person``)."""
-        key = self.key(self._steps * POLICY_PERIOD, self.look(state), self._keys.m_y)
+    def moment(self, state: PlantState) -> np.ndarray:
+        """M_yh for the coming policy period, (1,), N m (see ``Person``)."""
+        key = self.key(self._steps * POLICY_PERIOD, self.look(state), float(self._keys.moment[0]))
         self._steps += 1
         if key is not None:
             self._keys.press(key)
-        return self._keys.m_y
+        return self._keys.moment
 
     def look(self, state: PlantState) -> Picture:
         """What there is to see of a plant."""
@@ -144,7 +147,7 @@ class SimulatedTutor:
         wanted = self._wanted(seen, seconds - seen.seconds, elapsed, m_y_human)
         if seconds < self._may_press_at:
             return None
-        key = _towards(wanted, m_y_human) if self.profile.watches else self._random.choice([None, *Key])
+        key = _towards(wanted, m_y_human) if self.profile.watches else self._random.choice(_ANY_KEY)
         if key is not None:
             self._may_press_at = seconds + 1.0 / self.profile.key_rate - ROUNDING
         return key

@@ -4,53 +4,31 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
 from shared_control.seeds import episode_seed
-from shared_control.tasks.balance.settings import TaskSettings
+from shared_control.tasks.balance.task import settled
+from shared_control.tasks.task import Task
 
-from ..callbacks import Hooks
-from ..record import EpisodeRecord, settled
+from ..callbacks import Callbacks
+from ..episode import Episode
+from ..learn import run_episode
 
 Act = Callable[[np.ndarray], np.ndarray]
-"""A policy: observation (3,) -> action (1,)."""
+"""A policy: observation (n,) -> action (k,)."""
 
 TEST_EPISODES = 20
-TEST_SECONDS = 10.0
 TEST_SEED = 424_242
 """Of the ball starts; another for each evaluation of a study."""
-POSITION_ERROR_MAX = 0.02
-"""Mean |position error| of a success, m."""
-VELOCITY_MAX = 0.03
-"""Mean |velocity| of a success, m/s."""
 SUCCESSES_NEEDED = 19
 """Of 20 test episodes, in two evaluations in a row."""
-
-
-@dataclass(frozen=True, eq=False)
-class TestEpisode:
-    """One episode alone."""
-
-    __test__ = False  # nothing for pytest to collect
-
-    position_error: np.ndarray
-    """(steps,), m"""
-    velocity: np.ndarray
-    """(steps,), m/s"""
-    fallen: bool
-
-    @property
-    def success(self) -> bool:
-        """The ball was kept, and is at rest in the centre at the end."""
-        return (not self.fallen and settled(self.position_error) < POSITION_ERROR_MAX
-                and settled(self.velocity) < VELOCITY_MAX)
 
 
 @dataclass(frozen=True)
 class Evaluation:
     """A randomised test."""
 
-    episodes: tuple[TestEpisode, ...]
+    episodes: tuple[Episode, ...]
 
     @property
     def successes(self) -> int:
@@ -70,65 +48,52 @@ class Evaluation:
     @property
     def mean_position_error(self) -> float:
         """Mean |position error| over the last 3 s of the episodes, m."""
-        return float(np.mean([settled(episode.position_error) for episode in self.episodes]))
+        return float(np.mean([settled(np.array(episode.position_error)) for episode in self.episodes]))
 
     @property
     def mean_velocity(self) -> float:
         """Mean |velocity| over the last 3 s of the episodes, m/s."""
-        return float(np.mean([settled(episode.velocity) for episode in self.episodes]))
+        return float(np.mean([settled(np.array(episode.velocity)) for episode in self.episodes]))
 
 
-def test_settings(task: TaskSettings) -> TaskSettings:
-    """The task as it is tested: 10 s an episode."""
-    return replace(task, episode_seconds=TEST_SECONDS)
+def as_tested(task: Task) -> Task:
+    """The task with episodes as long as those of the test."""
+    return replace(task, episode_seconds=task.test_seconds)
 
 
-test_settings.__test__ = False  # type: ignore[attr-defined]
-
-
-def evaluate(act: Act, env: BalanceEnv, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
-             hooks: Hooks | None = None) -> Evaluation:
-    """Test ``act`` in ``env`` (with :func:`test_settings`, and nobody at the keys).
+def evaluate(act: Act, env: SharedControlEnv, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
+             callbacks: Callbacks | None = None) -> Evaluation:
+    """Test ``act`` in ``env`` (of a task :func:`as_tested`, with nobody at the keys).
 
     Args:
         seed: of the ball starts.
-        hooks: are told of each episode.
+        callbacks: called for each episode.
     """
-    hooks = hooks or Hooks()
+    callbacks = callbacks or Callbacks()
     return Evaluation(tuple(
-        run_test_episode(act, env, number, seed, hooks) for number in range(1, episodes + 1)))
+        run_test_episode(act, env, number, seed, callbacks) for number in range(1, episodes + 1)))
 
 
-def passes(act: Act, env: BalanceEnv, seed: int = TEST_SEED) -> bool:
+def passes(act: Act, env: SharedControlEnv, seed: int = TEST_SEED) -> bool:
     """Whether ``act`` succeeds in 19 of 20 episodes; stops as soon as the answer is known."""
     successes = failures = 0
     while successes < SUCCESSES_NEEDED and failures <= TEST_EPISODES - SUCCESSES_NEEDED:
-        if run_test_episode(act, env, successes + failures + 1, seed, Hooks()).success:
+        if run_test_episode(act, env, successes + failures + 1, seed, Callbacks()).success:
             successes += 1
         else:
             failures += 1
     return successes == SUCCESSES_NEEDED
 
 
-def run_test_episode(act: Act, env: BalanceEnv, number: int, seed: int, hooks: Hooks) -> TestEpisode:
+def run_test_episode(act: Act, env: SharedControlEnv, number: int, seed: int, callbacks: Callbacks) -> Episode:
     """Episode ``number`` (from 1) of the test ``seed``; begun anew when the plant was interrupted."""
     while True:
-        record = EpisodeRecord(number, 'test')
-        hooks.episode_started(record)
+        episode = Episode(env.task, number, 'test')
+        callbacks.episode_started(episode)
         try:
-            _run(act, env, episode_seed(seed, number), record, hooks)
+            run_episode(act, env, episode_seed(seed, number), episode, callbacks)
         except PlantInterrupted as error:
-            hooks.interrupted(error)
+            callbacks.interrupted(error)
             continue
-        hooks.episode_tested(record)
-        return TestEpisode(np.array(record.position_error), np.array(record.velocity), record.fallen)
-
-
-def _run(act: Act, env: BalanceEnv, seed: int, record: EpisodeRecord, hooks: Hooks) -> None:
-    observation, _ = env.reset(seed=seed)
-    ended = False
-    while not ended:
-        observation, _, terminated, truncated, info = env.step(act(observation))
-        record.add(info)
-        hooks.stepped(record)
-        ended = terminated or truncated
+        callbacks.episode_tested(episode)
+        return episode

@@ -3,20 +3,20 @@
 from typing import Any
 
 import numpy as np
-from shared_control.env import BalanceEnv
+from shared_control.env import SharedControlEnv
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import PandaModel
-from shared_control.tasks.balance.settings import TaskSettings
+from shared_control.tasks.task import Task
 from shared_control_sim.local_plant import LocalPlant
 
 from .result import TRACKS, ProtocolResult
 
 
-class RecordingEnv(BalanceEnv):
-    """A :class:`BalanceEnv` on a plant in this process that keeps the tracks of all its episodes."""
+class RecordingEnv(SharedControlEnv):
+    """A :class:`SharedControlEnv` on a plant in this process that keeps the tracks of all its episodes."""
 
-    def __init__(self, plant: LocalPlant, settings: TaskSettings):
-        super().__init__(plant, settings)
+    def __init__(self, plant: LocalPlant, task: Task):
+        super().__init__(plant, task)
         self._world = plant.world
         self._robot = PandaModel()
         self._episodes: list[list[tuple[float, ...]]] = []
@@ -24,30 +24,32 @@ class RecordingEnv(BalanceEnv):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None,
               ) -> tuple[np.ndarray, dict[str, Any]]:
-        """See :class:`BalanceEnv`; a new row begins."""
+        """See :class:`SharedControlEnv`; a new row begins."""
         self._episodes.append([])
         self._fallen.append(False)
         return super().reset(seed=seed, options=options)
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """See :class:`BalanceEnv`."""
+        """See :class:`SharedControlEnv`."""
         result = super().step(action)
         info = result[-1]
         state = info['state']
         q, qd = self._world.joint_state()
         tray_velocity = float(self._robot.jacobian(q)[0] @ qd)
         self._episodes[-1].append((
-            state.position_error, state.ball_velocity, tray_velocity - state.ball_velocity, info['m_y_agent'],
+            state.position_error, state.velocity, tray_velocity - state.velocity, float(info['agent'][0]),
             state.manipulability))
-        self._fallen[-1] = info['fallen']
+        self._fallen[-1] = info['failed']
         return result
 
     def result(self, test: str) -> ProtocolResult:
         """All episodes so far, as the result of ``test``."""
-        steps = round(self.settings.episode_seconds / POLICY_PERIOD)
+        steps = round(self.task.episode_seconds / POLICY_PERIOD)
         tracks = np.full((len(TRACKS), len(self._episodes), steps), np.nan)
         for row, episode in enumerate(self._episodes):
             tracks[:, row, :len(episode)] = np.array(episode).T
+        success = [self.task.succeeded(np.array(episode).T[0], np.array(episode).T[1], fallen)
+                   for episode, fallen in zip(self._episodes, self._fallen, strict=True)]
         return ProtocolResult(
             test, np.arange(1, steps + 1) * POLICY_PERIOD, **dict(zip(TRACKS, tracks, strict=True)),
-            fallen=np.array(self._fallen))
+            fallen=np.array(self._fallen), success=np.array(success))

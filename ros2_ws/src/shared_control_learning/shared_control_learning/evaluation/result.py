@@ -4,9 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .evaluate import TestEpisode
-
-TRACKS = ('position_error', 'velocity', 'velocity_error', 'm_y_agent', 'manipulability')
+TRACKS = ('position_error', 'velocity', 'velocity_error', 'agent_moment', 'manipulability')
 """The arrays over time that a :class:`ProtocolResult` holds, by name."""
 
 
@@ -27,17 +25,11 @@ class ProtocolResult:
     """Of the ball along base x, (episodes, steps), m/s: what the policy sees."""
     velocity_error: np.ndarray
     """Tray minus ball along base x, (episodes, steps), m/s: the rate of the position error."""
-    m_y_agent: np.ndarray
+    agent_moment: np.ndarray
     """M_yai over the period that ended then, (episodes, steps), N m"""
     manipulability: np.ndarray
     """k_w (34), (episodes, steps); the thesis quotes 1 - k_w^2."""
     fallen: np.ndarray
     """(episodes,), bool"""
-
-    @property
-    def episodes(self) -> tuple[TestEpisode, ...]:
-        """The episodes as :mod:`.evaluate` judges them, up to the fall of the ball."""
-        known = np.isfinite(self.position_error).sum(axis=1)
-        return tuple(
-            TestEpisode(error[:steps], velocity[:steps], bool(fallen)) for error, velocity, steps, fallen
-            in zip(self.position_error, self.velocity, known, self.fallen, strict=True))
+    success: np.ndarray
+    """As the task judges each episode, (episodes,), bool"""

@@ -1,9 +1,9 @@
 """The tests by name."""
 
 from shared_control.control.references import FREQUENCIES
-from shared_control.tasks.balance.settings import TaskSettings
+from shared_control.tasks.task import Task
 
-from ..callbacks import Hooks
+from ..callbacks import Callbacks
 from .evaluate import TEST_EPISODES, TEST_SEED, Act
 from .perturbation import run_perturbation
 from .randomized import run_randomized
@@ -13,8 +13,8 @@ from .trajectory import run_trajectory
 PROTOCOLS = ('randomized', 'perturbation', 'trajectory')
 
 
-def run_protocol(name: str, act: Act, task: TaskSettings, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
-                 hooks: Hooks | None = None) -> list[ProtocolResult]:
+def run_protocol(name: str, act: Act, task: Task, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
+                 callbacks: Callbacks | None = None) -> list[ProtocolResult]:
     """The results of a protocol: one, or one a frequency.
 
     Args:
@@ -22,13 +22,13 @@ def run_protocol(name: str, act: Act, task: TaskSettings, episodes: int = TEST_E
         act: the policy.
         task: what it was trained for.
         episodes, seed: of the randomised test; the others have one episode that is always the same.
-        hooks: are told of each episode.
+        callbacks: called for each episode.
     """
     if name == 'randomized':
-        return [run_randomized(act, task, episodes, seed, hooks)]
+        return [run_randomized(act, task, episodes, seed, callbacks)]
     if name == 'perturbation':
-        return [run_perturbation(act, task, hooks=hooks)]
-    return [run_trajectory(act, frequency, task, hooks) for frequency in FREQUENCIES]
+        return [run_perturbation(act, task, callbacks=callbacks)]
+    return [run_trajectory(act, frequency, task, callbacks) for frequency in FREQUENCIES]
 
 
 def count_episodes(name: str, episodes: int = TEST_EPISODES) -> int:

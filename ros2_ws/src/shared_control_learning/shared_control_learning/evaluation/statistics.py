@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
+from shared_control.tasks.balance.task import settled
 
-from ..record import settled
 from .result import ProtocolResult
 
 FIGURES = {
@@ -15,7 +15,7 @@ FIGURES = {
     'position_error_settled': 'mean |position error| over the last 3 s, m',
     'velocity_error': 'mean |velocity error|, m/s',
     'velocity_error_settled': 'mean |velocity error| over the last 3 s, m/s',
-    'm_y_agent': 'mean |M_yai|, N m',
+    'agent_moment': 'mean |M_yai|, N m',
     'k_w': 'mean manipulability (34)',
     'one_minus_k_w_squared': "mean of the appendix' form of it",
 }
@@ -25,17 +25,18 @@ FIGURES = {
 def episode_figures(result: ProtocolResult) -> list[dict[str, float]]:
     """The figures of each episode, by the names of :data:`FIGURES`; of the time before the ball fell."""
     figures = []
-    for row, episode in enumerate(result.episodes):
-        steps = slice(len(episode.position_error))
-        velocity_error, k_w = result.velocity_error[row, steps], result.manipulability[row, steps]
+    for row, errors in enumerate(result.position_error):
+        steps = slice(int(np.isfinite(errors).sum()))
+        error, velocity_error = errors[steps], result.velocity_error[row, steps]
+        k_w = result.manipulability[row, steps]
         figures.append({
-            'kept': float(not episode.fallen), 'success': float(episode.success),
-            'position_error': float(np.abs(episode.position_error).mean()),
-            'position_error_max': float(np.abs(episode.position_error).max()),
-            'position_error_settled': settled(episode.position_error),
+            'kept': float(not result.fallen[row]), 'success': float(result.success[row]),
+            'position_error': float(np.abs(error).mean()),
+            'position_error_max': float(np.abs(error).max()),
+            'position_error_settled': settled(error),
             'velocity_error': float(np.abs(velocity_error).mean()),
             'velocity_error_settled': settled(velocity_error),
-            'm_y_agent': float(np.abs(result.m_y_agent[row, steps]).mean()),
+            'agent_moment': float(np.abs(result.agent_moment[row, steps]).mean()),
             'k_w': float(k_w.mean()), 'one_minus_k_w_squared': float((1 - k_w ** 2).mean())})
     return figures
 

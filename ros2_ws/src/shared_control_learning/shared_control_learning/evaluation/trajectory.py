@@ -2,16 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 from shared_control.control.references import cosine_reference
 from shared_control.plant import PlantState
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.model import PandaModel
-from shared_control.tasks.balance.settings import DEFAULT_TASK, TaskSettings
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 from shared_control_sim.local_plant import LocalPlant
 
-from ..callbacks import Hooks
+from ..callbacks import Callbacks
 from .evaluate import TEST_SEED, Act, run_test_episode
-from .perturbation import CENTRE
 from .recording import RecordingEnv
 from .result import ProtocolResult
 
@@ -22,8 +23,9 @@ SECONDS = 20.0
 class DrivenPlant(LocalPlant):
     """A plant whose joints follow the cosine reference of ``frequency`` (Hz) instead of standing still."""
 
-    def __init__(self, frequency: float, moment_limit: float):
-        super().__init__(None, moment_limit, ball_start_range=CENTRE)
+    def __init__(self, task: Task, frequency: float):
+        super().__init__(task)
+        self._centre = np.array(task.scene.home)
         self._reference = cosine_reference(PandaModel(), frequency, SECONDS, CONTROL_PERIOD)
 
     def reset(self, seed: int | None = None) -> PlantState:
@@ -31,24 +33,28 @@ class DrivenPlant(LocalPlant):
         self._tick = 0
         return super().reset(seed)
 
-    def tick(self, m_y: float) -> None:
+    def ball_start(self) -> np.ndarray:
+        """The tray's centre."""
+        return self._centre
+
+    def tick(self, moment: np.ndarray) -> None:
         """See :class:`LocalPlant`."""
         q, qd = self.world.joint_state()
         self.world.step(self.controller.torque(
-            q, qd, self.world.effort, m_y, self._reference.q[self._tick], self._reference.qd[self._tick]))
+            q, qd, self.world.effort, moment, self._reference.q[self._tick], self._reference.qd[self._tick]))
         self._tick += 1
 
 
-def run_trajectory(act: Act, frequency: float, task: TaskSettings = DEFAULT_TASK, hooks: Hooks | None = None,
+def run_trajectory(act: Act, frequency: float, task: Task = BALANCE, callbacks: Callbacks | None = None,
                    ) -> ProtocolResult:
     """Test ``act`` alone in one episode of 20 s on a tray that moves at ``frequency`` (Hz).
 
     See :func:`run_randomized` for the other arguments; the thesis' frequencies are
     ``shared_control.control.references.FREQUENCIES``.
     """
-    env = RecordingEnv(DrivenPlant(frequency, task.moment_limit), replace(task, episode_seconds=SECONDS))
+    env = RecordingEnv(DrivenPlant(task, frequency), replace(task, episode_seconds=SECONDS))
     try:
-        run_test_episode(act, env, 1, TEST_SEED, hooks or Hooks())
+        run_test_episode(act, env, 1, TEST_SEED, callbacks or Callbacks())
     finally:
         env.close()
     return env.result(f'trajectory {frequency:g} Hz')

@@ -11,8 +11,8 @@ from rosbags.interfaces import Connection
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
 from shared_control.contract import Topic
+from shared_control.keys import KeyPresses
 from shared_control.robot.limits import DOF, JOINT_NAMES
-from shared_control.teaching.keys import KeyPresses
 
 from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches

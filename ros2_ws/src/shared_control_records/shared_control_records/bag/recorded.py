@@ -7,7 +7,7 @@ simulated), ns. Rows are in the order in which they were received.
 from dataclasses import dataclass
 
 import numpy as np
-from shared_control.teaching.keys import Key
+from shared_control.keys import Key
 
 
 @dataclass(frozen=True, eq=False)

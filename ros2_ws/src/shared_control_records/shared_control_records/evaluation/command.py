@@ -45,18 +45,18 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
-    from shared_control_learning.callbacks import Hooks
+    from shared_control_learning.callbacks import Callbacks
     from shared_control_learning.evaluation.run import count_episodes, run_protocol
     from tqdm import tqdm
 
     from .figures import plots
     from .tables import by_test, text_table, write_csv, write_json
 
-    class Progress(Hooks):
+    class Progress(Callbacks):
         """Moves the bar."""
 
-        def episode_tested(self, record: Any) -> None:
-            """See :class:`Hooks`."""
+        def episode_tested(self, episode: Any) -> None:
+            """See :class:`Callbacks`."""
             bar.update()
 
     results = {}
@@ -65,7 +65,7 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
         for name, policy in policies.items():
             bar.set_description(name)
             results[name] = run_protocol(
-                args.protocol, policy.act, policy.preset.task, args.episodes, seed, Progress())
+                args.protocol, policy.act, policy.task, args.episodes, seed, Progress())
     print(text_table(results))
     if args.json:
         write_json(results, args.json, protocol=args.protocol, seed=seed)
@@ -83,14 +83,14 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
 def _decide(policies: dict[str, Any], seed: int, path: Path | None) -> int:
     import json
 
-    from shared_control.env import BalanceEnv
+    from shared_control.env import SharedControlEnv
     from shared_control.files import write_atomically
-    from shared_control_learning.evaluation.evaluate import passes, test_settings
+    from shared_control_learning.evaluation.evaluate import as_tested, passes
     from shared_control_sim.local_plant import LocalPlant
     answers = {}
     for name, policy in policies.items():
-        task = policy.preset.task
-        env = BalanceEnv(LocalPlant(None, task.moment_limit), test_settings(task))
+        task = policy.task
+        env = SharedControlEnv(LocalPlant(task), as_tested(task))
         try:
             answers[name] = passes(policy.act, env, seed)
         finally:

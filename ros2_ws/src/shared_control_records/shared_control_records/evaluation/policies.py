@@ -4,13 +4,13 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from shared_control_learning.episode_ppo import EpisodePPO
+from shared_control_learning.learner import Learner
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy
 
 from ..session.folder import SessionFolder
 
 
-def load_policies(paths: Sequence[Path]) -> dict[str, EpisodePPO]:
+def load_policies(paths: Sequence[Path]) -> dict[str, Learner]:
     """The policies, by their paths from the folder that they have in common.
 
     Raises:

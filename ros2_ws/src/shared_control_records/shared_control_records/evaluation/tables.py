@@ -17,7 +17,7 @@ Results = Mapping[str, Sequence[ProtocolResult]]
 _COLUMNS: dict[str, tuple[str, float, str]] = {
     'position_error': ('|error| mm', 1e3, '.1f'), 'position_error_max': ('largest', 1e3, '.1f'),
     'position_error_settled': ('last 3 s', 1e3, '.2f'), 'velocity_error': ('|velocity| mm/s', 1e3, '.1f'),
-    'velocity_error_settled': ('last 3 s', 1e3, '.2f'), 'm_y_agent': ('|M_yai| N m', 1.0, '.2f'),
+    'velocity_error_settled': ('last 3 s', 1e3, '.2f'), 'agent_moment': ('|M_yai| N m', 1.0, '.2f'),
     'k_w': ('k_w', 1.0, '.4f'), 'one_minus_k_w_squared': ('1 - k_w^2', 1.0, '.4f')}
 """Head, factor and format of a column, by the name of its figure."""
 

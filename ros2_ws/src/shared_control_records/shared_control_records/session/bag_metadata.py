@@ -10,7 +10,7 @@ from mcap.exceptions import McapError
 from mcap.reader import make_reader
 from shared_control import contract
 from shared_control.files import write_atomically
-from shared_control.tasks.balance.settings import DEFAULT_TASK
+from shared_control.tasks.balance import BALANCE
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag, BagReadError
@@ -56,7 +56,7 @@ def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:
     return EpisodeRow(
         number=track.number, phase=track.phase, seconds=float(track.seconds[-1]),
         episode_return=float(returns.values[ended]) if ended < len(returns.values) else None,
-        fallen=bool((bag.ball.position[first:last + 1, 2] < DEFAULT_TASK.fallen_below).any()),
+        fallen=bool((bag.ball.position[first:last + 1, 2] < BALANCE.fallen_below).any()),
         human_share=float(shares.values[shared]) if shared >= 0 else None)
 
 

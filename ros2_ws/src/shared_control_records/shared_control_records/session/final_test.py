@@ -5,15 +5,13 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from shared_control.files import write_atomically
 from shared_control.rates import POLICY_PERIOD
-from shared_control_learning.evaluation.evaluate import (
-    POSITION_ERROR_MAX,
-    VELOCITY_MAX,
-    Evaluation,
-    TestEpisode,
-    settled,
-)
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.balance.task import settled
+from shared_control_learning.episode import Episode
+from shared_control_learning.evaluation.evaluate import Evaluation
 
 STEPS_PER_SAMPLE = 5
 """A track is kept at 10 Hz."""
@@ -42,9 +40,9 @@ class FinalTest:
     """The test as kept."""
 
     episodes: tuple[TestedEpisode, ...]
-    position_error_max: float = POSITION_ERROR_MAX
+    position_error_max: float = BALANCE.scene.goal_radius
     """Mean |position error| of a success, m."""
-    velocity_max: float = VELOCITY_MAX
+    velocity_max: float = BALANCE.velocity_max
     """Mean |velocity| of a success, m/s."""
     sample_period: float = STEPS_PER_SAMPLE * POLICY_PERIOD
     """Of the tracks, s."""
@@ -81,11 +79,11 @@ def load_test(path: Path) -> FinalTest | None:
         raise ValueError(f'{path} is no result of a test: {error!r}') from error
 
 
-def _tested(episode: TestEpisode) -> TestedEpisode:
+def _tested(episode: Episode) -> TestedEpisode:
     track = tuple(round(float(error), 5) for error in episode.position_error[::STEPS_PER_SAMPLE])
     return TestedEpisode(
-        success=episode.success, kept=not episode.fallen, position_error=settled(episode.position_error),
-        velocity=settled(episode.velocity), ball_start=float(episode.position_error[0]), track=track)
+        success=episode.success, kept=not episode.failed, position_error=settled(np.array(episode.position_error)),
+        velocity=settled(np.array(episode.velocity)), ball_start=float(episode.position_error[0]), track=track)
 
 
 def _known(kind: type, content: dict[str, Any]) -> dict[str, Any]:

@@ -76,7 +76,7 @@ def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
 def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
     """What the plan has every policy go through, by name."""
     learner = load_policy(policy)
-    task = learner.preset.task
+    task = learner.task
     results = []
     if 'randomized' in plan.tests:
         results.append(run_randomized(learner.act, task, seed=episode_seed(TEST_SEED, job.participant.number)))

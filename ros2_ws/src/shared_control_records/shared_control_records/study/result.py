@@ -57,7 +57,8 @@ def save_result(result: RunResult, folder: Path) -> None:
     """Keep a result. ``result.json`` comes last and as a whole: a run that has one is done."""
     arrays: dict[str, Any] = {f'{name}/{track}': getattr(test, track).astype(np.float32)
                               for name, test in result.tests.items() for track in ('seconds', *TRACKS)}
-    arrays |= {f'{name}/fallen': test.fallen for name, test in result.tests.items()}
+    arrays |= {f'{name}/{track}': getattr(test, track)
+               for name, test in result.tests.items() for track in ('fallen', 'success')}
     packed = io.BytesIO()
     np.savez_compressed(packed, **arrays)
     write_atomically(folder / TESTS, packed.getvalue())
@@ -77,7 +78,7 @@ def load_result(folder: Path) -> RunResult | None:
             arrays = {name: packed[name] for name in packed.files}
         names = dict.fromkeys(name.rpartition('/')[0] for name in arrays)
         tests = {name: ProtocolResult(name, **{
-            key: arrays[f'{name}/{key}'] for key in ('seconds', *TRACKS, 'fallen')}) for name in names}
+            key: arrays[f'{name}/{key}'] for key in ('seconds', *TRACKS, 'fallen', 'success')}) for name in names}
         return RunResult(**content, tests=tests)
     except FileNotFoundError:
         return None

@@ -145,7 +145,7 @@ def draw_actions(first: str, second: str) -> Draw:
             axes.set(title=f'{group.capitalize()} performers (n = {len(runs)})', xlabel='Episode of training')
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             for who, colour in (('human', HUMAN), ('agent', AGENT)) if runs else ():
-                numbers, mean, sem, count = _by_episode(runs, f'mean_abs_m_y_{who}')
+                numbers, mean, sem, count = _by_episode(runs, f'mean_abs_{who}')
                 _line(axes, numbers, mean, sem, colour, who)
                 rows.append(pd.DataFrame({'group': group, 'who': who, 'condition': condition, 'episode': numbers,
                                           'mean': mean, 'sem': sem, 'n': count}))

@@ -88,19 +88,19 @@ def _badness(run: RunResult) -> float:
 
 
 def _row(run: RunResult) -> dict[str, float | int | str | bool | None]:
-    episodes = [episode for test in run.tests.values() for episode in test.episodes]
+    fallen = [fell for test in run.tests.values() for fell in test.fallen]
     row: dict[str, float | int | str | bool | None] = {
         'condition': run.condition, 'taught': run.taught, 'participant': run.participant, 'group': run.group,
         'simulated': run.simulated,
         'seed': run.seed, 'episodes': len(run.episodes), 'first_pass': run.first_pass, 'skilled': run.skilled,
-        'seconds': run.seconds, 'kept': float(np.mean([not e.fallen for e in episodes])) if episodes else None,
+        'seconds': run.seconds, 'kept': 1.0 - float(np.mean(fallen)) if fallen else None,
         'human_share_first': run.episodes[0].get('human_share'),
         'human_share_last': run.episodes[-1].get('human_share'),
-        'human_variance': _variance(run, 'std_m_y_human'), 'agent_variance': _variance(run, 'std_m_y_agent'),
+        'human_variance': _variance(run, 'std_human'), 'agent_variance': _variance(run, 'std_agent'),
         'workload': float(np.mean(list(run.tlx.values()))) if run.tlx else None}
     alone = run.tests.get('randomized')
     if alone is not None:
-        row['success'] = float(np.mean([episode.success for episode in alone.episodes]))
+        row['success'] = float(alone.success.mean())
         row['alone_error'] = 100 * float(away(alone)[:, -150:].mean())
         row['manipulability'] = float(np.nanmean(alone.manipulability))
     pushed = run.tests.get('perturbation')

@@ -8,7 +8,7 @@ from shared_control.control.references import JointReference, cosine_velocity
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.model import PandaModel, manipulability
 from shared_control.robot.posture import GAINS
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control_sim.bullet import BulletWorld
 
 SECONDS = 8.0
 """Of a run, s: two periods of the slowest reference. The thesis does not say."""
@@ -16,8 +16,9 @@ SETTLING_SECONDS = 2.0
 """The arm starts at rest and the reference at full speed: this long the start counts as such, s."""
 GAIN_SETS = ('high', 'low')
 """Table 3"""
-_BESIDE_THE_TRAY = 5.0
-"""Where the ball is dropped, so that the arm is alone, x in m."""
+_BESIDE_THE_TRAY = (5.0, 0.0, 0.94)
+"""Where the ball is dropped, so that the arm is alone, m."""
+_NO_MOMENT = np.zeros(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,16 +53,16 @@ class Tracking:
         return _rms((self.measured - self.reference)[self.seconds >= SETTLING_SECONDS])
 
 
-def track(model: PandaModel, world: BallOnTrayWorld, gains: str, nonlinear_terms: bool, frequency: float,
+def track(model: PandaModel, world: BulletWorld, gains: str, nonlinear_terms: bool, frequency: float,
           reference: JointReference) -> Tracking:
     """Let the arm follow ``reference``, made for ``frequency`` (Hz)."""
     controller = ComputedTorqueController(
-        model, GAINS[gains], CONTROL_PERIOD, compensate_nonlinear=nonlinear_terms)
-    world.reset(_BESIDE_THE_TRAY)
+        model, gains=GAINS[gains], dt=CONTROL_PERIOD, compensate_nonlinear=nonlinear_terms)
+    world.reset(np.array(_BESIDE_THE_TRAY))
     samples = []
     for q_reference, qd_reference in zip(reference.q, reference.qd, strict=True):
         q, qd = world.joint_state()
-        world.step(controller.torque(q, qd, world.effort, 0.0, q_reference, qd_reference))
+        world.step(controller.torque(q, qd, world.effort, _NO_MOMENT, q_reference, qd_reference))
         q, qd = world.joint_state()
         jacobian = model.jacobian(q)
         off = model.tray_pose(q)[0].copy()

@@ -116,7 +116,7 @@ class Moment:
         if wrench is not None:
             self._heard_at = now
             try:
-                self._m_y = moment_of(wrench)
+                self._m_y = float(moment_of(wrench)[0])
             except ValueError:
                 self._m_y = None
         return self._m_y if now - self._heard_at <= SILENT_AFTER else None

@@ -5,11 +5,13 @@ Behind them is the Panda of shared_control's world, which steps whenever it is l
 """
 
 import time
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-from shared_control.tasks.balance.scene import Ball
-from shared_control_sim.bullet import BallOnTrayWorld
+from shared_control.scene import Ball
+from shared_control.tasks.balance import BALANCE
+from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
 
 from . import controllers
@@ -26,7 +28,7 @@ class Panda:
         if hostname == 'nobody':
             raise RuntimeError('libfranka: Connection to FCI refused.')
         # With next to nothing on the tray the arm stays where it is under zero torque.
-        self._robot = EffortPanda(BallOnTrayWorld(Ball(mass=1e-6)))
+        self._robot = EffortPanda(BulletWorld(replace(BALANCE.scene, ball=Ball(mass=1e-6))))
         self._began = time.monotonic()
         self._ticks = 0
         self._controller = None

@@ -9,7 +9,7 @@ from mcap.reader import make_reader
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
-from .bag_folder import BagError, bag_files
+from .files import BagError, bag_files
 
 _NEVER = 2 ** 63 - 1
 """What rosbag2 gives as the start of a file without a message, ns."""

@@ -1,11 +1,12 @@
-"""Making a bag whole again whose recorder was killed."""
+"""Making a bag whole again whose recorder was killed, and adding to a whole one."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .bag_folder import BagError, bag_files
-from .mcap_repair import finish
+from .files import BagError, bag_files
 from .metadata import lists_all_files, read_summary, write_metadata
+from .rewrite import rewrite
 
 
 @dataclass(frozen=True)
@@ -22,36 +23,44 @@ class Recovered:
         return f'{self.path}: {self.messages} messages kept, {self.cut} bytes of a torn end cut off'
 
 
-def recover(bag: str | Path) -> list[Recovered]:
+def recover(bag: str | Path, meanwhile: Callable[[], None] = lambda: None) -> list[Recovered]:
     """Finish the files that a killed recorder left unfinished, and bring the bag's ``metadata.yaml`` up to date.
 
     Every chunk that had reached the file is kept. It is safe to call at any time, and does nothing to a whole bag.
+
+    Args:
+        bag: the bag's folder.
+        meanwhile: called after each chunk that was copied; a file has four a second of recording.
 
     Returns:
         What was finished; nothing for a bag that is whole.
 
     Raises:
-        BagError: there is no such folder, a recorder is still writing it, or a file in it is no recording.
-        OSError: the folder cannot be written.
+        BagError: there is no such folder, a recorder is still writing it, or a file in it is no recording or damaged
+            before its end.
+        OSError: the folder cannot be written, or has no room for a second copy of a file.
     """
     bag = Path(bag).expanduser().absolute()
     if not bag.is_dir():
         raise BagError(f'there is no bag at {bag}')
     unfinished = [path for path in bag_files(bag) if read_summary(path) is None]
-    recovered = [Recovered(path, *finish(path)) for path in unfinished]
+    recovered = [Recovered(path, *rewrite(path, meanwhile=meanwhile)) for path in unfinished]
     if bag_files(bag) and (recovered or not lists_all_files(bag)):
         write_metadata(bag)
     return recovered
 
 
 def annotate(bag: str | Path, name: str, content: dict[str, str]) -> None:
-    """Put a metadata record into the last file of a finished bag, in place of an earlier one.
+    """Put a metadata record into the last file of a bag, in place of an earlier one of that name.
+
+    What a killed recorder left unfinished is finished first. The file is copied, which takes a while for a long one.
 
     Raises:
-        BagError: the bag has no file, or a recorder is still writing it.
-        OSError: the file cannot be written; :func:`recover` finishes it when there is room again.
+        BagError: the bag has no file, or as in :func:`recover`.
+        OSError: as in :func:`recover`; the file is as it was.
     """
-    files = bag_files(Path(bag))
+    recover(bag)
+    files = bag_files(Path(bag).expanduser())
     if not files:
         raise BagError(f'there is no bag at {bag}')
-    finish(files[-1], (name, content))
+    rewrite(files[-1], (name, content))

@@ -28,14 +28,14 @@ def lock(file: IO[bytes], path: Path) -> None:
     """Claim a file for this process until it is closed or the process ends, however it ends.
 
     Raises:
-        BagError: another process is writing the file, or has removed it.
+        BagError: another process is writing the file, or has removed or replaced it.
     """
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         raise BagError(f'{path} is being recorded by another process') from error
     if not os.fstat(file.fileno()).st_nlink:
-        raise BagError(f'{path} was removed by another process')
+        raise BagError(f'{path} was removed or replaced by another process')
 
 
 def _number(path: Path) -> int:

@@ -1,0 +1,88 @@
+"""From key presses to the human's moment (3.4)."""
+
+from collections.abc import Mapping, Sequence
+from enum import IntEnum
+
+import numpy as np
+
+KEYSTROKE = 5.0
+"""N m a press: 0.05 of the action times 100 N m (3.4 and appendix)."""
+
+HUMAN_MOMENT_LIMIT = 10.0
+"""Bound of the human's moment about each axis, N m."""
+
+
+class Key(IntEnum):
+    """The keys; the value is the button's index in ``/human/keys``. Up and down are for tasks with two axes."""
+
+    LEFT = 0
+    RIGHT = 1
+    SPACE = 2
+    UP = 3
+    DOWN = 4
+
+
+KeyMap = Mapping[Key, tuple[int, float]]
+"""Which of a task's axes (index) a key moves, and which way (1 or -1). Space lets go of all."""
+
+LEFT_AND_RIGHT: KeyMap = {Key.LEFT: (0, 1.0), Key.RIGHT: (0, -1.0)}
+"""One axis. Left is positive: for a moment about base y the tray's +x side tips down, and the ball rolls to +x, the
+left of every picture."""
+
+
+class KeyMoment:
+    """The human's moment as the keys leave it: a key adds a step about its axis, space sets zero.
+
+    Args:
+        keys: which key moves which axis.
+        step: of one press, N m.
+        limit: bound about each axis, N m.
+    """
+
+    def __init__(self, keys: KeyMap = LEFT_AND_RIGHT, step: float = KEYSTROKE, limit: float = HUMAN_MOMENT_LIMIT):
+        self._keys = keys
+        self._step = step
+        self._limit = limit
+        self.moment = np.zeros(1 + max(axis for axis, _ in keys.values()))
+        """(k,), N m"""
+
+    def press(self, key: Key) -> None:
+        """One press; a key that moves no axis does nothing."""
+        if key is Key.SPACE:
+            self.release()
+        elif key in self._keys:
+            axis, sign = self._keys[key]
+            moment = self.moment.copy()
+            moment[axis] = min(max(moment[axis] + sign * self._step, -self._limit), self._limit)
+            self.moment = moment
+
+    def release(self) -> None:
+        """The person is gone: zero."""
+        self.moment = np.zeros_like(self.moment)
+
+
+BUTTONS = 3
+"""Buttons that every source of keys has: left, right, space."""
+
+
+class KeyPresses:
+    """Finds presses (rising edges) in the button states that one source of keys repeats."""
+
+    def __init__(self) -> None:
+        self._down = [False] * len(Key)
+
+    def update(self, buttons: Sequence[int]) -> list[Key]:
+        """The keys that went down since the last state.
+
+        Raises:
+            ValueError: fewer than three buttons, or a button that is neither 0 nor 1.
+        """
+        if len(buttons) < BUTTONS:
+            raise ValueError(f'expected {BUTTONS} buttons (left, right, space) or more, got {len(buttons)}')
+        known = list(buttons[:len(Key)])
+        if any(button not in (0, 1) for button in known):
+            raise ValueError(f'expected buttons of 0 or 1 (left, right, space, up, down), got {known}')
+        down = [bool(button) for button in known] + [False] * (len(Key) - len(known))
+        pressed = [key for key in Key if down[key] and not self._down[key]]
+        self._down = down
+        return pressed

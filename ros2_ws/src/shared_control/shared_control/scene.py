@@ -1,0 +1,49 @@
+"""The geometry of a task: everything that there is to see and touch, once."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box in the tray's frame, with its axes."""
+
+    centre: tuple[float, float, float]
+    """m"""
+    size: tuple[float, float, float]
+    """m"""
+
+
+@dataclass(frozen=True)
+class Ball:
+    """The ball of the thesis (3.1)."""
+
+    mass: float = 0.17
+    """kg"""
+    radius: float = 0.015
+    """m, as the appendix runs it (the text says 1.5 cm in diameter)"""
+    friction: float = 0.8
+    """Coulomb coefficient against the tray; there is no rolling friction."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A tray on the arm's flange, and a ball on it.
+
+    Positions on the tray are in the tray's frame: x and y along its sides, z out of its surface.
+    """
+
+    half_length: float
+    """Of the surface along the tray's x, m."""
+    half_width: float
+    """Of the surface along the tray's y, m."""
+    surface: float
+    """Height of the surface above the tray's origin, m."""
+    wall: float
+    """Height of the walls above the surface, m."""
+    boxes: tuple[Box, ...]
+    """What the tray is made of."""
+    home: tuple[float, float, float]
+    """Where a ball is dropped onto the middle of the tray, with the arm at its reference joints, base frame, m."""
+    goal_radius: float
+    """How near the middle the ball is where it should be, m."""
+    ball: Ball = Ball()

@@ -1,0 +1,114 @@
+"""What a task is to everything else: simulator, controller, agent, screens, recorder and reports read it from here."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+
+from ..keys import KeyMap
+from ..plant import PlantState
+from ..robot.model import PandaModel
+from ..scene import Scene
+
+
+class TaskState(Protocol):
+    """What a task makes of the plant, SI units; a task's own state has more."""
+
+    position_error: float
+    """Goal minus ball, m: signed along the axis of a task with one, a distance (0 or more) with two."""
+    velocity: float
+    """Of the ball, m/s: signed or a speed, likewise."""
+    manipulability: float
+    """k_w (34)"""
+
+
+@dataclass(frozen=True)
+class Task(ABC):
+    """A task that a person and a robot do together by moments on the tray.
+
+    A task is a frozen dataclass: its fields are its settings, kept with every policy and session; a task of that class
+    is made without any. ``k`` is the number of its axes; moments are vectors of that length everywhere, in the order
+    of ``axes``.
+    """
+
+    __pydantic_config__: ClassVar[dict[str, Any]] = {'extra': 'forbid', 'allow_inf_nan': False}
+    # For whoever reads settings from a file (shared_control_learning.policy_file).
+
+    name: ClassVar[str]
+    """Under which it is found (entry point of the group ``shared_control.tasks``)."""
+    axes: ClassVar[tuple[int, ...]]
+    """Rows of the wrench at the tray (fx, fy, fz, mx, my, mz) that are shared, (k,)."""
+    keys: ClassVar[KeyMap]
+    """Which key moves which axis, and which way."""
+    scene: ClassVar[Scene]
+    """All geometry."""
+    reward_names: ClassVar[tuple[str, ...]]
+    """The terms that :meth:`reward_terms` may have."""
+    observation_size: ClassVar[int]
+    test_seconds: ClassVar[float] = 10.0
+    """Length of an episode of the randomised test, s (4.2)."""
+
+    episode_seconds: float = 15.0
+    """Length of an episode of teaching, s (3.1)."""
+    reward_scale: float = 1.0
+    """What the reward is multiplied by before a learner sees it."""
+
+    @property
+    @abstractmethod
+    def scale(self) -> np.ndarray:
+        """The agent's moment at a full action of 1, (k,), N m."""
+
+    @property
+    @abstractmethod
+    def limit(self) -> np.ndarray:
+        """Bound of the sum of both moments, (k,), N m."""
+
+    @abstractmethod
+    def ball_start(self, random: np.random.Generator) -> np.ndarray:
+        """Where the ball is dropped at the start of an episode, base frame, (3,), m."""
+
+    @abstractmethod
+    def describe(self, state: PlantState, model: PandaModel) -> Any:
+        """What the task looks at, a :class:`TaskState`."""
+
+    @abstractmethod
+    def observe(self, state: Any) -> np.ndarray:
+        """What the learner sees, (observation_size,), float32, within ``OBSERVATION_BOUND``."""
+
+    @abstractmethod
+    def reward_terms(self, state: Any) -> dict[str, float]:
+        """The terms of the reward by name, unscaled."""
+
+    @abstractmethod
+    def failed(self, state: Any) -> bool:
+        """Whether the episode has failed, and ends."""
+
+    @abstractmethod
+    def succeeded(self, position_error: np.ndarray, velocity: np.ndarray, failed: bool) -> bool:
+        """Whether an episode alone was a success. Tracks of :class:`TaskState` at the policy's rate, (steps,) each."""
+
+
+OBSERVATION_BOUND = 20.0
+"""Observations are clipped to this."""
+
+
+class BallStarts:
+    """Where the ball is dropped, episode after episode, as a task draws it.
+
+    Args:
+        task: the task.
+        seed: the same seed gives the same starts, here, in the simulator node and in the environment.
+    """
+
+    def __init__(self, task: Task, seed: int | None = None):
+        self._task = task
+        self.seed(seed)
+
+    def seed(self, seed: int | None) -> None:
+        """Begin the sequence that belongs to ``seed``."""
+        self._random = np.random.default_rng(seed)
+
+    def next(self) -> np.ndarray:
+        """In the base frame, (3,), m."""
+        return self._task.ball_start(self._random)

@@ -1,0 +1,49 @@
+"""What a learner is to everything else: the learn loop, the agent's node, policy files, tests."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+from shared_control.tasks.task import Task
+
+from .episode import Episode
+
+
+class Learner(Protocol):
+    """Learns a task episode by episode.
+
+    What it does must follow from its seed and the episodes that it has learned from alone, so that one that was saved
+    and loaded goes on as if it had never stopped.
+    """
+
+    name: str
+    """Of its preset."""
+    task: Task
+    settings: Any
+    """A frozen dataclass of everything that can be set, kept with the policy."""
+    seed: int
+    episode: int
+    """Episodes learned from so far."""
+
+    def begin(self) -> int:
+        """A new episode begins; gives its seed (31 bits), for plant and tutor."""
+
+    def explore(self, observation: np.ndarray) -> np.ndarray:
+        """The action to try, not clipped; (n,) -> (k,)."""
+
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        """The action without exploring, within -1..1; (n,) -> (k,)."""
+
+    def learn_from(self, episode: Episode) -> dict[str, float]:
+        """Learn from a finished episode; gives figures by name, for a log."""
+
+    def tensors(self) -> dict[str, torch.Tensor]:
+        """All that it has learned and needs to go on, by name."""
+
+    def restore(self, tensors: Mapping[str, torch.Tensor]) -> None:
+        """Become the learner that gave these tensors.
+
+        Raises:
+            ValueError: these are not tensors of such a learner; the message names the one that is wrong.
+        """

@@ -1,0 +1,189 @@
+"""PPO with one update an episode; with a person's corrections in its loss, when it is coached."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+import numpy as np
+import torch
+from shared_control.env import action_space, observation_space
+from shared_control.rates import POLICY_PERIOD
+from shared_control.seeds import episode_seed
+from shared_control.tasks.task import Task
+from stable_baselines3.common.buffers import RolloutBuffer
+from stable_baselines3.common.logger import Logger
+
+from .corrections import Corrections, find_corrections
+from .episode import Episode
+from .ppo import ExtraLossPPO, Spaces
+from .settings import PpoLearnerSettings
+
+CORRECTIONS_MAX = 100_000
+"""Most remembered corrections; three episodes have 2,250 at most."""
+
+
+class PpoLearner:
+    """A :class:`Learner` whose update is that of Stable-Baselines3's PPO over one episode, however long that is.
+
+    With coaching it adds ``lambda |pi(s) - y|^2``, the weighted mean over the corrections of the last episodes, to
+    PPO's loss: corrective advice as labels of a network, COACH (Celemin and Ruiz-del-Solar, 2019) and D-COACH
+    (Perez-Dattari et al., 2018), which also credit advice to a window of the past, and replay it; beside a reward, as
+    PVP (Peng et al., 2023) does. Without corrections it is PPO, to the bit.
+
+    Args:
+        name: of the settings.
+        task: what it learns.
+        settings: how.
+        seed: of the first weights and of everything random after them.
+    """
+
+    def __init__(self, name: str, task: Task, settings: PpoLearnerSettings, seed: int = 0):
+        self.name, self.task, self.settings, self.seed = name, task, settings, seed
+        self.episode = 0
+        ppo = settings.ppo
+        with torch.random.fork_rng(devices=[]):
+            torch.manual_seed(seed)
+            self._ppo = ExtraLossPPO(
+                'MlpPolicy', Spaces(observation_space(task), action_space(task)),
+                learning_rate=lambda _: ppo.learning_rate_in(self.episode + 1), n_steps=ppo.batch_size,
+                batch_size=ppo.batch_size, n_epochs=ppo.epochs, gamma=ppo.gamma, gae_lambda=ppo.gae_lambda,
+                clip_range=ppo.clip_range, ent_coef=ppo.entropy_weight, vf_coef=ppo.value_weight,
+                max_grad_norm=ppo.max_gradient_norm, device='cpu',
+                policy_kwargs={'net_arch': {'pi': list(ppo.hidden), 'vf': list(ppo.value_hidden)},
+                               'log_std_init': float(np.log(ppo.initial_std))})
+        self._ppo.set_logger(Logger(None, []))
+        self.policy = self._ppo.policy
+        self.policy.log_std.requires_grad_(ppo.std_decay is None)
+        self.corrections = Corrections.none(task)
+        """Those of the last episodes."""
+        self._kept = math.exp(-POLICY_PERIOD / ppo.noise_seconds) if ppo.noise_seconds else 0.0
+        """Correlation of the noise from one step to the next."""
+        self._random = torch.Generator()
+        self._noise = torch.zeros(len(task.axes))
+
+    def begin(self) -> int:
+        """See :class:`Learner`."""
+        seed = episode_seed(self.seed, self.episode + 1)
+        self._random.manual_seed(seed)
+        self._noise = self._draw()
+        std = self.settings.ppo.std_in(self.episode + 1)
+        if std is not None:
+            self.policy.log_std.data.fill_(math.log(std))
+        return seed
+
+    def _draw(self) -> torch.Tensor:
+        return torch.randn(len(self.task.axes), generator=self._random)
+
+    @torch.no_grad()
+    def explore(self, observation: np.ndarray) -> np.ndarray:
+        """See :class:`Learner`.
+
+        Every action is Gaussian, as PPO takes it to be; those that follow each other may be correlated (Hollenstein
+        et al., 2024), since a tray does not follow what changes its sign every 20 ms.
+        """
+        noise = self._noise
+        self._noise = self._kept * noise + math.sqrt(1.0 - self._kept ** 2) * self._draw()
+        return (self.means(torch.as_tensor(observation)) + self.policy.log_std.exp() * noise).numpy()
+
+    @torch.no_grad()
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        """See :class:`Learner`."""
+        return self.means(torch.as_tensor(observation)).clamp(-1.0, 1.0).numpy()
+
+    def means(self, observations: torch.Tensor) -> torch.Tensor:
+        """Means of the Gaussian policy, not clipped; (..., n) -> (..., k)."""
+        return self.policy.action_net(self.policy.mlp_extractor.forward_actor(observations))
+
+    def learn_from(self, episode: Episode) -> dict[str, float]:
+        """See :class:`Learner`."""
+        self._ppo.extra_loss = self._coaching_loss(episode)
+        self._ppo.rollout_buffer = self._rollout(episode)
+        self._ppo.num_timesteps += len(episode)
+        with _numpy_seeded(episode_seed(self.seed, self.episode + 1)):  # the order of the minibatches
+            self._ppo.train()
+        self.episode += 1
+        figures = {name: float(value) for name, value in self._ppo.logger.name_to_value.items()}
+        self._ppo.logger.dump()  # which forgets them
+        return {**figures, 'train/corrections': float(len(self.corrections))}
+
+    def _coaching_loss(self, episode: Episode) -> Callable[[], torch.Tensor] | None:
+        """What the corrections add to the loss; None when they do not count."""
+        coaching = self.settings.coaching
+        if coaching is None:
+            return None
+        number = self.episode + 1
+        with torch.no_grad():
+            means = self.means(torch.as_tensor(np.array(episode.observations))).clamp(-1.0, 1.0).numpy()
+        found = find_corrections(episode, number, means, coaching)
+        known = self.corrections = self.corrections.since(number - coaching.memory_episodes + 1).followed_by(found)
+        weight = coaching.weight_in(number)
+        if weight == 0.0 or not len(known):
+            return None
+
+        def loss() -> torch.Tensor:
+            squares = ((self.means(known.observations) - known.labels) ** 2).sum(dim=1, keepdim=True)
+            return weight * ((known.weights * squares).sum() / known.weights.sum())
+
+        return loss
+
+    @torch.no_grad()
+    def _rollout(self, episode: Episode) -> RolloutBuffer:
+        """The episode as Stable-Baselines3 has it, with advantages; as long as the episode is."""
+        assert episode.last_observation is not None, 'the episode has not ended'
+        observations, actions = np.array(episode.observations), np.array(episode.actions)
+        values, log_probabilities, _ = self.policy.evaluate_actions(
+            torch.as_tensor(observations), torch.as_tensor(actions))
+        buffer = RolloutBuffer(len(episode), self._ppo.observation_space, self._ppo.action_space, device='cpu',
+                               gamma=self._ppo.gamma, gae_lambda=self._ppo.gae_lambda)
+        for step, reward in enumerate(episode.rewards):
+            buffer.add(observations[step], actions[step], np.array([reward]), np.array([step == 0]),
+                       values[step], log_probabilities[step])
+        last_value = self.policy.predict_values(torch.as_tensor(episode.last_observation).unsqueeze(0))
+        buffer.compute_returns_and_advantage(last_value, np.array([episode.failed]))
+        return buffer
+
+    def tensors(self) -> dict[str, torch.Tensor]:
+        """See :class:`Learner`: weights, Adam's moments and step counts, and the remembered corrections."""
+        return self._weights() | self.corrections.tensors()
+
+    def restore(self, tensors: Mapping[str, torch.Tensor]) -> None:
+        """See :class:`Learner`."""
+        weights, corrections = self._weights(), self.corrections.tensors()
+        wanted = weights.keys() | corrections.keys()
+        if tensors.keys() != wanted:
+            raise ValueError(f'it should hold the tensors {", ".join(sorted(wanted))}; these differ: '
+                             f'{", ".join(sorted(tensors.keys() ^ wanted))}')
+        rows = min((len(tensors[name]) for name in corrections if tensors[name].dim()), default=0)
+        for name, tensor in tensors.items():
+            like = weights[name] if name in weights else corrections[name].new_empty(rows, corrections[name].shape[1])
+            if tensor.shape != like.shape or tensor.dtype != like.dtype or rows > CORRECTIONS_MAX:
+                raise ValueError(f'{name} is {tensor.dtype} {tuple(tensor.shape)}, expected {like.dtype} '
+                                 f'{tuple(like.shape)}')
+        for name, own in weights.items():
+            own.copy_(tensors[name])
+        self.corrections = Corrections(*(tensors[name] for name in corrections))
+
+    def _weights(self) -> dict[str, torch.Tensor]:
+        """Copying into these changes the learner."""
+        optimizer = self.policy.optimizer
+        tensors = {}
+        for name, parameter in self.policy.named_parameters():
+            state = optimizer.state[parameter]
+            if not state:  # as Adam itself starts
+                state.update(step=torch.tensor(0.0), exp_avg=torch.zeros_like(parameter),
+                             exp_avg_sq=torch.zeros_like(parameter))
+            tensors[f'policy.{name}'] = parameter.data
+            for key in ('step', 'exp_avg', 'exp_avg_sq'):
+                tensors[f'adam.{key}.{name}'] = state[key]
+        return tensors
+
+
+@contextmanager
+def _numpy_seeded(seed: int) -> Iterator[None]:
+    """NumPy's global random numbers, which Stable-Baselines3 draws, begin at ``seed``, and are as before afterwards."""
+    before = np.random.get_state()  # noqa: NPY002 - the generator that Stable-Baselines3 uses
+    np.random.seed(seed)  # noqa: NPY002
+    try:
+        yield
+    finally:
+        np.random.set_state(before)  # noqa: NPY002

@@ -1,0 +1,89 @@
+"""Everything that can be set of PPO and of what corrections teach it."""
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from pydantic import ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0, le=1e6)]
+NotNegative = Annotated[float, Field(ge=0, le=1e6)]
+Fraction = Annotated[float, Field(ge=0, le=1)]
+Layers = Annotated[tuple[Annotated[int, Field(ge=1, le=1024)], ...], Field(max_length=4)]
+Delay = Annotated[float, Field(ge=0, le=5)]
+_STRICT = ConfigDict(extra='forbid', allow_inf_nan=False)
+
+
+@dataclass(frozen=True)
+class PpoSettings:
+    """Settings of PPO (Schulman et al., 2017) with one update an episode."""
+
+    __pydantic_config__: ClassVar = _STRICT
+
+    hidden: Layers = ()
+    """Units of the policy's hidden layers (tanh). None at all: a linear policy of three weights and a bias."""
+    value_hidden: Layers = (32, 32)
+    """Units of the value function's hidden layers (tanh)."""
+    initial_std: Positive = 0.6
+    """Of the policy in the first episode, in units of the action."""
+    std_decay: Annotated[float, Field(gt=0, le=1)] | None = 0.95
+    """What the standard deviation is multiplied by after each episode; None: PPO learns it."""
+    std_min: Positive = 0.05
+    """The least standard deviation that a decay leads to."""
+    noise_seconds: NotNegative = 0.0
+    """Correlation time of the exploring noise, s; 0: white, drawn anew at each step."""
+    learning_rate: Positive = 1e-2
+    """Of Adam, in the first episode."""
+    learning_rate_decay: Annotated[float, Field(gt=0, le=1)] = 1.0
+    """What the learning rate is multiplied by after each episode."""
+    learning_rate_min: Positive = 1e-3
+    """The least learning rate that a decay leads to."""
+    epochs: Annotated[int, Field(ge=1, le=1000)] = 10
+    batch_size: Annotated[int, Field(ge=2, le=100_000)] = 125
+    gamma: Fraction = 0.99
+    gae_lambda: Fraction = 0.95
+    clip_range: Positive = 0.2
+    entropy_weight: NotNegative = 0.0
+    value_weight: NotNegative = 0.5
+    max_gradient_norm: Positive = 0.5
+
+    def std_in(self, episode: int) -> float | None:
+        """The policy's standard deviation in ``episode`` (from 1); None when it is learned."""
+        return None if self.std_decay is None else max(self.std_min, self.initial_std * self.std_decay ** (episode - 1))
+
+    def learning_rate_in(self, episode: int) -> float:
+        """Learning rate of the update after ``episode`` (from 1)."""
+        rate = self.learning_rate * self.learning_rate_decay ** (episode - 1)
+        return max(rate, min(self.learning_rate, self.learning_rate_min))
+
+
+@dataclass(frozen=True)
+class CoachingSettings:
+    """How a correction teaches the policy."""
+
+    __pydantic_config__: ClassVar = _STRICT
+
+    gain: Positive = 2.0
+    """g: how far a correction of a full action's moment moves the label, in units of the action."""
+    delays: Annotated[tuple[Delay, ...], Field(min_length=1, max_length=100)] = (0.3, 0.4, 0.5, 0.6, 0.7)
+    """D: how long after the robot's action people may press, s. Each correction counts for all of them."""
+    memory_episodes: Annotated[int, Field(ge=1, le=1000)] = 3
+    """Corrections of so many episodes are taught, again and again."""
+    weight: NotNegative = 1.0
+    """lambda in the first episode."""
+    fade_episodes: Annotated[int, Field(ge=1, le=100_000)] = 8
+    """The episode from which on lambda is 0; it falls linearly until then."""
+
+    def weight_in(self, episode: int) -> float:
+        """lambda in ``episode`` (from 1)."""
+        return self.weight * max(0.0, 1.0 - (episode - 1) / self.fade_episodes)
+
+
+@dataclass(frozen=True)
+class PpoLearnerSettings:
+    """How PPO learns, and whether a person's corrections teach it, too."""
+
+    __pydantic_config__: ClassVar = _STRICT
+
+    ppo: PpoSettings
+    coaching: CoachingSettings | None = None
+    """None: PPO is told nothing of the human."""
