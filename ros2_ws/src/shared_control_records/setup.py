@@ -15,8 +15,8 @@ setup(
         ('share/' + package_name, ['package.xml']),
     ],
     install_requires=[
-        'shared_control', 'shared_control_sim', 'shared_control_learning', 'numpy', 'pin', 'rosbags', 'mcap',
-        'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
+        'shared_control', 'shared_control_sim', 'shared_control_learning', 'numpy', 'pin', 'pydantic', 'rosbags',
+        'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
     ],
     extras_require={'test': ['pytest'], 'ray': ['ray']},
     zip_safe=False,

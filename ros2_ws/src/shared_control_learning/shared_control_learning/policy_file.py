@@ -7,7 +7,8 @@ Nothing in it is executed when it is read.
 import dataclasses
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from types import UnionType
+from typing import Annotated, Any, Union, get_args, get_type_hints
 
 import pydantic
 import torch
@@ -20,6 +21,7 @@ from shared_control.tasks.task import Task
 
 from .learner import Learner
 from .presets import preset
+from .wrong_content import what_is_wrong
 
 FORMAT = 'shared-control policy 4'
 SUFFIX = '.safetensors'
@@ -36,14 +38,14 @@ Name = Annotated[str, pydantic.Field(max_length=100)]
 class Description(pydantic.BaseModel):
     """The JSON in the header of a policy file."""
 
-    model_config = pydantic.ConfigDict(extra='forbid')
+    model_config = pydantic.ConfigDict(strict=True, extra='forbid')
 
     format: str
     preset: Name
     task: Name
     task_settings: dict[str, Any]
     settings: dict[str, Any]
-    seed: Count
+    seed: Annotated[int, pydantic.Field(ge=0, lt=2**32)]
     episode: Count
     observation_space: dict[str, Any]
     action_space: dict[str, Any]
@@ -80,7 +82,7 @@ def load_policy(path: Path) -> Learner:
     except PolicyFileError:
         raise
     except pydantic.ValidationError as error:
-        raise PolicyFileError(f'{path} is no usable policy: {explain(error)}') from error
+        raise PolicyFileError(f'{path} is no usable policy: {what_is_wrong(error)}') from error
     except (SafetensorError, OSError, ValueError, TypeError) as error:
         raise PolicyFileError(f'{path} is no usable policy: {error}') from error
     return learner
@@ -109,13 +111,6 @@ def read_description(path: Path) -> dict[str, Any]:
     return description
 
 
-def explain(error: pydantic.ValidationError) -> str:
-    """What is wrong, in a line: field and reason of each fault, without what was given in full."""
-    return '; '.join(
-        f'{".".join(map(str, fault["loc"])) or "it"}: {fault["msg"]}, not {str(fault["input"])[:100]!r}'
-        for fault in error.errors()[:5])
-
-
 def _learner(description: Description) -> Learner:
     """A fresh learner as described."""
     known = preset(description.preset)
@@ -130,15 +125,25 @@ def _learner(description: Description) -> Learner:
 
 
 def _validated(kind: type, stored: dict[str, Any], where: str) -> Any:
-    """A dataclass of settings from its JSON: every field is there, of its type and within its range."""
-    names = {field.name for field in dataclasses.fields(kind)}
-    if stored.keys() != names:
-        raise ValueError(f'{where} should have {", ".join(sorted(names))}; these differ: '
-                         f'{", ".join(sorted(stored.keys() ^ names))}')
+    """A dataclass of settings from its JSON: every field is there, no other, of its type and within its range."""
+    text = json.dumps(stored)
     try:
-        return pydantic.TypeAdapter(kind).validate_json(json.dumps(stored), strict=True)
+        _all_fields(kind).model_validate_json(text)
+        return pydantic.TypeAdapter(kind).validate_json(text, strict=True)
     except pydantic.ValidationError as error:
-        raise ValueError(f'{where}: {explain(error)}') from error
+        raise ValueError(f'{where}.{what_is_wrong(error)}') from error
+
+
+def _all_fields(kind: Any) -> Any:
+    """A model of a dataclass whose fields must all be there, those of dataclasses in it as well."""
+    if dataclasses.is_dataclass(kind) and isinstance(kind, type):
+        hints = get_type_hints(kind, include_extras=True)
+        fields: dict[str, Any] = {f.name: (_all_fields(hints[f.name]), ...) for f in dataclasses.fields(kind)}
+        return pydantic.create_model(
+            kind.__name__, __config__=pydantic.ConfigDict(strict=True, extra='forbid', allow_inf_nan=False), **fields)
+    if isinstance(kind, UnionType):
+        return Union[tuple(map(_all_fields, get_args(kind)))]  # noqa: UP007 - of as many as there are
+    return kind
 
 
 def _spaces(task: Task) -> dict[str, dict[str, Any]]:

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pydantic import ConfigDict, TypeAdapter, with_config
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
@@ -22,6 +23,7 @@ from .learn import learn
 from .learner import Learner
 from .policy_file import POLICY_NAME, load_policy, save_policy
 from .presets import Preset
+from .wrong_content import what_is_wrong
 
 RUN_NAME = 'run.json'
 TENSORBOARD_NAME = 'tensorboard'
@@ -34,6 +36,7 @@ class TrainingError(ValueError):
     """A folder holds no run, or another one than was asked for; the message says which."""
 
 
+@with_config(ConfigDict(extra='forbid'))
 @dataclass
 class TrainingRun:
     """What was taught, by whom, and how well it went."""
@@ -68,6 +71,9 @@ class TrainingRun:
         """Episodes to skilled: those taught when the policy had passed twice in a row; None: not yet."""
         pairs = zip(self.tests, self.tests[1:], strict=False)
         return next((episode for (_, before), (episode, now) in pairs if before and now), None)
+
+
+_TRAINING_RUN = TypeAdapter(TrainingRun)
 
 
 def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, *, until_skilled: bool = True,
@@ -123,11 +129,9 @@ def read_run(folder: Path) -> TrainingRun:
     """
     path = folder / RUN_NAME
     try:
-        stored = json.loads(path.read_text())
-        stored['tests'] = [(int(episode), bool(passed)) for episode, passed in stored['tests']]
-        return TrainingRun(**stored)
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        raise TrainingError(f'{path} is no run: {error}') from error
+        return _TRAINING_RUN.validate_json(path.read_bytes())
+    except (OSError, ValueError) as error:
+        raise TrainingError(f'{path} is no run: {what_is_wrong(error)}') from error
 
 
 def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner, TrainingRun]:

@@ -85,19 +85,44 @@ def change(path, description=lambda d: None, tensors=lambda t: None):
 @pytest.mark.parametrize(('edit', 'reason'), [
     (lambda d: d.update(format='shared-control policy 99'), 'of this version'),
     (lambda d: d.update(preset='magic'), "no learner 'magic'"),
-    (lambda d: d['settings']['ppo'].update(hidden=[100_000]), 'hidden'),
+    (lambda d: d.update(task='magic'), "no task 'magic'"),
+    (lambda d: d['settings']['ppo'].update(hidden=[100_000]), r'ppo\.hidden\.0: .*less than or equal to 1024'),
+    (lambda d: d['settings']['ppo'].update(hidden=[8] * 5), r'settings\.ppo\.hidden: .*at most 4'),
     (lambda d: d['settings']['ppo'].update(value_hidden=[8, 8]), 'expected torch.float32'),
     (lambda d: d['settings']['ppo'].update(hidden='wide'), 'hidden'),
     (lambda d: d['task_settings'].update(action_scale=float('nan')), 'action_scale'),
-    (lambda d: d['task_settings'].pop('action_scale'), 'action_scale'),
+    (lambda d: d['task_settings'].pop('action_scale'), r'task_settings\.action_scale: is missing'),
+    (lambda d: d['task_settings'].update(gravity=1.0), r'task_settings\.gravity: is not known'),
     (lambda d: d.update(episode=-1), 'episode'),
     (lambda d: d.update(seed='x'), 'seed'),
+    (lambda d: d.update(seed=2**32), 'seed'),
+    (lambda d: d.update(author='x'), 'author: is not known'),
     (lambda d: d['action_space'].update(low=[-2.0]), 'action_space'),
     (lambda d: d.pop('preset'), 'preset'),
 ])
 def test_a_wrong_description_is_refused(path, edit, reason):
     change(path, description=edit)
     refused(path, reason)
+
+
+@pytest.mark.parametrize(('part', 'field', 'value'), [
+    ('task', 'observation_scales', [0.1, 0.0, 0.1]), ('task', 'observation_scales', [0.1, 0.1]),
+    ('task', 'weight_pitch', -1.0), ('task', 'fall_reward', float('-inf')), ('task', 'episode_seconds', 0.0),
+    ('task', 'rate_centre', 10.0), ('task', 'moment_limit', '20'),
+    ('ppo', 'batch_size', 1), ('ppo', 'batch_size', True), ('ppo', 'noise_seconds', -0.1), ('ppo', 'epochs', 0),
+    ('ppo', 'epochs', 1001), ('ppo', 'learning_rate', 0.0), ('ppo', 'learning_rate_min', -1.0), ('ppo', 'gamma', 1.1),
+    ('ppo', 'gae_lambda', -0.1), ('ppo', 'clip_range', 0.0), ('ppo', 'initial_std', 0.0), ('ppo', 'std_min', -1.0),
+    ('ppo', 'value_weight', -0.5), ('ppo', 'entropy_weight', float('nan')), ('ppo', 'std_decay', 10**400),
+    ('coaching', 'delays', [-0.1]), ('coaching', 'delays', [5.1]), ('coaching', 'delays', [0.1] * 101),
+    ('coaching', 'delays', []), ('coaching', 'memory_episodes', -1), ('coaching', 'memory_episodes', 1001),
+    ('coaching', 'weight', -1.0), ('coaching', 'fade_episodes', 0), ('coaching', 'gain', None),
+])
+def test_settings_out_of_range_are_refused_by_name(path, part, field, value):
+    def part_of(words, part):
+        return words['task_settings'] if part == 'task' else words['settings'][part]
+
+    change(path, description=lambda d: part_of(d, part).update({field: value}))
+    refused(path, rf'\b{field}\b')
 
 
 @pytest.mark.parametrize(('edit', 'reason'), [

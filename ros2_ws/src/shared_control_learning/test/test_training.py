@@ -49,6 +49,17 @@ def test_another_run_is_not_mixed_in(tmp_path):
         train(SHORT, None, 6, 2, folder=tmp_path, evaluate_every=0)
 
 
+@pytest.mark.parametrize(('content', 'said'), [
+    ('{', 'Invalid JSON'), ('{"preset": "coached", "tutor": null}', 'seed: is missing'),
+    ('{"preset": "coached", "tutor": null, "seed": 1, "tests": [[1, "x"]]}', r'tests\.0\.1: .* boolean'),
+    ('{"preset": "coached", "tutor": null, "seed": 1, "sed": 1}', 'sed: is not known'),
+])
+def test_a_damaged_run_is_named(tmp_path, content, said):
+    (tmp_path / 'run.json').write_text(content)
+    with pytest.raises(TrainingError, match=rf'run\.json is no run: {said}'):
+        read_run(tmp_path)
+
+
 def test_a_policy_that_knows_nothing_does_not_pass(tmp_path):
     run = train(SHORT, None, 5, 2, folder=tmp_path, evaluate_every=2)
     assert run.tests == read_run(tmp_path).tests == [(2, False)]

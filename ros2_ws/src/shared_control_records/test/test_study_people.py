@@ -93,8 +93,11 @@ def test_a_session_that_fails_is_said_and_done_again(study, answers):
     assert not Progress.of(folder.person(plan.participant(1))).practised
 
 
-def test_a_damaged_progress_is_named(study):
+@pytest.mark.parametrize(('content', 'said'), [
+    ({'name': 'Ann'}, 'name: is not known'), ({'taught': 'coached'}, 'taught: Input should be a valid'),
+    ({'tlx': {'coached': {'mental': 101}}}, r'tlx\.coached\.mental: .*, found 101'), ([], 'should be')])
+def test_a_damaged_progress_is_named(study, content, said):
     folder, plan = study
-    (folder.person(plan.participant(1)) / 'progress.json').write_text(json.dumps({'name': 'Ann'}))
-    with pytest.raises(ProgressError, match=r'progress\.json is damaged'):
+    (folder.person(plan.participant(1)) / 'progress.json').write_text(json.dumps(content))
+    with pytest.raises(ProgressError, match=rf'progress\.json is damaged: {said}'):
         Progress.of(folder.person(plan.participant(1)))

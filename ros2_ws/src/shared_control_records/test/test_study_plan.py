@@ -1,5 +1,6 @@
 """Plans of studies: what they hold, and what is said of wrong ones."""
 
+import re
 from dataclasses import fields
 from pathlib import Path
 
@@ -63,26 +64,69 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
 
 
 @pytest.mark.parametrize(('old', 'new', 'said'), [
-    ('seed: 3', 'sed: 3', 'no key sed; there are conditions, participants, seed, tests'),
-    ('seed: 3', 'seed: -1', 'seed is -1, expected a whole number of at least 0'),
-    ('expert: 1', 'expert: 0', 'expert is 0'),
-    ('expert: 1', 'wizard: 1', "no profile 'wizard'; there are expert"),
+    ('seed: 3', 'sed: 3', "no key 'sed'; there are conditions, participants, seed, tests"),
+    ('seed: 3', 'seed: -1', 'seed: Input should be greater than or equal to 0, found -1'),
+    ('seed: 3', 'seed: 0x' + 'f' * 10_000, 'seed: Input should be less than 2147483648, found a very large number'),
+    ('seed: 3', 'seed: ' + '9' * 10_000, 'Exceeds the limit'),
+    ('seed: 3', 'seed: 2020-01-01', 'seed: Input should be a valid integer, found datetime.date(2020, 1, 1)'),
+    ('expert: 1', 'expert: 0', 'participants.simulated.expert: Input should be greater than or equal to 1, found 0'),
+    ('expert: 1', 'expert: 2000000000', 'participants.simulated.expert: Input should be less than or equal to 1000'),
+    ('expert: 1', 'wizard: 1', "participants.simulated.wizard: no tutor profile 'wizard'; there are expert"),
     ('coached: {', 'coach: {', "conditions.coach.preset: no learner 'coach'; there are autonomous"),
-    ('episodes: 5', 'episodes: five', "episodes is 'five', expected a whole number"),
-    ('taught: false', 'taught: maybe', "conditions.alone.taught is 'maybe', expected true or false"),
-    ('conditions:', 'tests: [jump]\nconditions:', 'tests: no jump; there are randomized'),
+    ('episodes: 5', 'episodes: five', "conditions.coached.episodes: Input should be a valid integer, found 'five'"),
+    ('episodes: 5', 'epochs: 5', "conditions.coached: no key 'epochs'; there are episodes, evaluate_every, preset"),
+    ('taught: false', 'taught: maybe', "conditions.alone.taught: Input should be a valid boolean, found 'maybe'"),
+    ('conditions:', 'tests: [jump]\nconditions:', "tests.0: Input should be 'randomized', 'perturbation' or"),
     ('alone:', '../alone:', 'a condition is named by letters'),
-    ('{expert: 1, low: 2}', '[expert]', 'simulated is'),
-    (PLAN, 'seed: 3\nparticipants: {simulated: {low: 1}}', 'the plan lacks conditions'),
-    (PLAN, '- 1', 'the plan is [1], expected keys'),
+    ('alone:', '1:', 'conditions.1: Input should be a valid string'),
+    ('{expert: 1, low: 2}', '[expert]', 'participants.simulated: Input should be a valid dictionary'),
+    ('{expert: 1, low: 2}', '{}', 'participants.simulated: Dictionary should have at least 1 item'),
+    (PLAN, 'seed: 3\nparticipants: {simulated: {low: 1}}', 'conditions: is missing'),
+    (PLAN, '- 1', 'should be keys with values, found [1]'),
+    (PLAN, '', 'should be keys with values, found None'),
     (PLAN, 'a: [', 'plan.yaml'),
-    (PLAN, REAL.replace('consent: You may stop at any time.', "consent: ''"), 'participants.consent'),
+    (PLAN, '[' * 100_000, 'plan.yaml'),
+    (PLAN, f'a: {"b" * 2**20}', 'more than 1048576 bytes'),
+    (PLAN, 'a: &a [1]\nb: [*a, *a]', 'line 2: aliases'),
+    (PLAN, REAL.replace('consent: You may stop at any time.', "consent: ' '"), 'participants.consent'),
+    (PLAN, REAL.replace('You may stop at any time.', r'"\e[2J"'), 'consent: a text that a terminal shows'),
+    (PLAN, REAL.replace('consent: You may stop at any time.', 'minutes: .nan'), 'participants.consent: is missing'),
+    (PLAN, REAL.replace('real: 4', 'real: 4, spread: 0.1'), "participants: no key 'spread'"),
 ])
 def test_a_wrong_plan_is_named_with_its_key(plan_file, old, new, said):
     path = plan_file(PLAN.replace(old, new))
     with pytest.raises(PlanError) as error:
         load_plan(path)
     assert said in str(error.value) and str(path) in str(error.value)
+
+
+@pytest.mark.parametrize('text', [
+    'seed: ' + 'x' * 100_000, 'x' * 100_000 + ': 1', 'tests: [' + ('[' * 50 + 'x, ' * 1000 + ']' * 50) + ']',
+    'conditions: {' + 'x' * 100_000 + ': 3}', 'a: *' + 'x' * 100_000, 'a: !' + 'x' * 100_000 + ' 1',
+    r'"\e]0;title\a": 1', r'seed: "\e[2J"'])
+def test_what_is_said_of_a_wrong_plan_is_short_and_plain(plan_file, text):
+    path = plan_file(text)
+    with pytest.raises(PlanError) as error:
+        load_plan(path)
+    assert len(str(error.value)) < len(str(path)) + 1500 and '\x1b' not in str(error.value)
+
+
+@pytest.mark.parametrize(('options', 'refused'), [
+    ('[--params-file, own.yaml]', None), ('[--params-file=own.yaml, --no-screen]', None),
+    ('[--tutor, page, --page, "127.0.0.1:9000"]', None),
+    ('[--output, /elsewhere]', "'--output' is none of the options"), ('[--output=/elsewhere]', '--output=/elsewhere'),
+    ('[--outp=/elsewhere]', '--outp=/elsewhere'), ('[--o, /elsewhere]', "'--o'"), ('[--overwrite]', '--overwrite'),
+    ('[--no-screen, --resume, /elsewhere]', 'participants.session_options.1'), ('[--r=/elsewhere]', '--r=/elsewhere'),
+    ('[--, x]', "'--'"), ('[--page, 8088]', 'session_options.1: Input should be a valid string'),
+    ('--no-screen', 'session_options: Input should be a valid list'),
+])
+def test_options_of_sessions_name_no_other_folder(plan_file, options, refused):
+    path = plan_file(REAL.replace('real: 4', f'real: 4, session_options: {options}'))
+    if refused is None:
+        assert load_plan(path).people.session_options[0].startswith('--')
+    else:
+        with pytest.raises(PlanError, match=re.escape(refused)):
+            load_plan(path)
 
 
 def test_a_missing_participant_is_said(plan_file):

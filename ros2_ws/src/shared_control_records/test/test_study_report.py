@@ -1,6 +1,7 @@
 """Statistics of a study, and its report."""
 
 import csv
+import json
 import re
 from pathlib import Path
 
@@ -109,12 +110,15 @@ def test_the_report_is_one_page_with_its_figures_and_numbers(folder, tmp_path):
 
 def test_what_is_unfinished_or_damaged_is_left_out_and_said(plan, tmp_path, monkeypatch, capsys):
     folder = made_study(tmp_path / 'study', plan, missing=2)
-    damaged, torn = (folder.path / 'runs/autonomous' / label for label in ('p01', 'p02'))
+    damaged, torn, wrong = (folder.path / 'runs/autonomous' / label for label in ('p01', 'p02', 'p03'))
     (damaged / TESTS).write_bytes(b'PK\x03\x04 half a zip')
     (torn / RESULT).unlink()
+    content = json.loads((wrong / RESULT).read_text())
+    (wrong / RESULT).write_text(json.dumps({**content, 'seconds': 'many'}))
     study = load_study(folder)
-    assert len(study.runs) == 12
-    assert len(study.problems) == 1 and str(damaged) in study.problems[0]
+    assert len(study.runs) == 11
+    assert len(study.problems) == 2 and str(damaged) in study.problems[0]
+    assert str(wrong) in study.problems[1] and "seconds: Input should be a valid number" in study.problems[1]
 
     empty = StudyFolder(tmp_path / 'empty')
     empty.begin(plan)

@@ -1,5 +1,8 @@
 """Doing the runs of a study: killed half-way, on a full disk, on a Ray cluster."""
 
+import multiprocessing
+import os
+import signal
 import subprocess
 import sys
 import time
@@ -11,7 +14,7 @@ from shared_control.cli import main
 from shared_control_learning.episode_table import read_rows
 from shared_control_records.study.folder import StudyFolder
 from shared_control_records.study.plan import load_plan
-from shared_control_records.study.pool import on_ray
+from shared_control_records.study.pool import on_ray, on_this_machine
 from shared_control_records.study.result import is_done, load_result
 from shared_control_testing.studies import made_study
 
@@ -38,16 +41,13 @@ def wait_until(condition):
         time.sleep(0.05)
 
 
-def workers(folder):
-    """Processes that do runs of a study."""
+def processes(session):
+    """Those of a session that live."""
     found = []
-    for path in Path('/proc').glob('[0-9]*/cmdline'):
-        try:
-            arguments = path.read_bytes().split(b'\0')
-        except OSError:  # it has just ended
-            continue
-        if b'shared_control_records.study.job' in arguments and str(folder).encode() in arguments:
-            found.append(int(path.parent.name))
+    for path in Path('/proc').glob('[0-9]*'):
+        with suppress(OSError):  # it has just ended
+            if os.getsid(int(path.name)) == session and (path / 'cmdline').read_bytes():
+                found.append(int(path.name))
     return found
 
 
@@ -63,12 +63,12 @@ def test_a_study_that_is_killed_goes_on_with_nothing_lost_and_nothing_twice(plan
     first, second = (folder.run(job) for job in load_plan(plan).jobs)
     command = [sys.executable, '-m', 'shared_control', 'study', str(plan), '--output', str(folder.path),
                '--workers', '1']
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as study:
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True) as study:
         try:
             wait_until(lambda: is_done(first) and len(read_rows(second / 'episodes.csv')) == 1)
         finally:
             study.kill()
-    wait_until(lambda: not workers(folder.path))
+    wait_until(lambda: not processes(study.pid))
     assert not is_done(second)
     kept = {path: path.stat().st_mtime_ns for path in first.iterdir()}
     again = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
@@ -113,6 +113,33 @@ def test_a_run_that_fails_is_named_with_its_reason(plan, tmp_path, monkeypatch, 
     assert main() == 2
     said = capfd.readouterr().err
     assert f'autonomous/p02: {run}' in said and 'What is finished is kept' in said
+
+
+def test_a_run_that_is_killed_is_named_and_the_others_are_done(plan, tmp_path):
+    folder = StudyFolder(tmp_path / 'study')
+    folder.begin(plan)
+    first, second = load_plan(plan).jobs
+    outcomes = {}
+    for ended in on_this_machine(folder.path, [first.name, second.name], 1):
+        outcomes |= dict(ended)
+        if not outcomes and (folder.run(first) / 'run.json').exists():
+            multiprocessing.active_children()[0].kill()
+    assert 'was killed' in outcomes[first.name] and outcomes[second.name] is None
+    assert is_done(folder.run(second)) and not is_done(folder.run(first))
+
+
+def test_control_c_ends_all_processes(plan, tmp_path):
+    folder = StudyFolder(tmp_path / 'study')
+    command = [sys.executable, '-m', 'shared_control', 'study', str(plan), '--output', str(folder.path),
+               '--workers', '2']
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          start_new_session=True) as study:
+        wait_until(lambda: all((folder.run(job) / 'run.json').exists() for job in load_plan(plan).jobs))
+        os.killpg(study.pid, signal.SIGINT)  # as a terminal does
+        said, _ = study.communicate(timeout=SECONDS)
+    assert study.returncode == 130
+    assert not processes(study.pid)
+    assert 'Traceback' not in said
 
 
 def test_a_local_ray_cluster_does_the_same_list(plan, tmp_path):

@@ -1,17 +1,18 @@
 """The file that keeps the final test of a policy alone (``test.json``)."""
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter, ValidationError
 from shared_control.files import write_atomically
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.balance.task import settled
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import Evaluation
+from shared_control_learning.wrong_content import what_is_wrong
 
 STEPS_PER_SAMPLE = 5
 """A track is kept at 10 Hz."""
@@ -53,6 +54,9 @@ class FinalTest:
         return sum(episode.success for episode in self.episodes)
 
 
+_FINAL_TEST = TypeAdapter(FinalTest)
+
+
 def save_test(evaluation: Evaluation, path: Path) -> FinalTest:
     """Keep an evaluation in ``path``."""
     test = FinalTest(tuple(_tested(episode) for episode in evaluation.episodes))
@@ -70,13 +74,9 @@ def load_test(path: Path) -> FinalTest | None:
     if not path.is_file():
         return None
     try:
-        content = json.loads(path.read_text())
-        episodes = tuple(
-            TestedEpisode(**{**_known(TestedEpisode, episode), 'track': tuple(episode.get('track', ()))})
-            for episode in content['episodes'])
-        return FinalTest(**{**_known(FinalTest, content), 'episodes': episodes})
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f'{path} is no result of a test: {error!r}') from error
+        return _FINAL_TEST.validate_json(path.read_bytes())
+    except ValidationError as error:
+        raise ValueError(f'{path} is no result of a test: {what_is_wrong(error)}') from error
 
 
 def _tested(episode: Episode) -> TestedEpisode:
@@ -84,8 +84,3 @@ def _tested(episode: Episode) -> TestedEpisode:
     return TestedEpisode(
         success=episode.success, kept=not episode.failed, position_error=settled(np.array(episode.position_error)),
         velocity=settled(np.array(episode.velocity)), ball_start=float(episode.position_error[0]), track=track)
-
-
-def _known(kind: type, content: dict[str, Any]) -> dict[str, Any]:
-    """What ``kind`` has a field for."""
-    return {field.name: content[field.name] for field in fields(kind) if field.name in content}

@@ -1,7 +1,5 @@
-"""One run of a study: train, test, keep the result. ``python -m shared_control_records.study.job FOLDER NAME``"""
+"""One run of a study: train, test, keep the result."""
 
-import argparse
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -91,21 +89,3 @@ def table(path: Path) -> list[dict[str, Any]]:
     """Taught episodes of an ``episodes.csv``, numbers as numbers."""
     return [{key: value if key == 'phase' else float(value) for key, value in row.items()}
             for row in read_rows(path) if row['phase'] == 'teach']
-
-
-def main() -> int:
-    """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('folder', type=Path)
-    parser.add_argument('name')
-    args = parser.parse_args()
-    try:
-        run_job(StudyFolder(args.folder), args.name)
-    except (ValueError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == '__main__':
-    sys.exit(main())

@@ -1,14 +1,14 @@
 """Doing jobs in parallel: by processes of this machine, or on a Ray cluster. Both do the same list of jobs."""
 
+import multiprocessing
 import os
-import subprocess
-import sys
-import tempfile
-import time
+import signal
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
 from shared_control.processes import leave_with_the_parent
 
@@ -23,29 +23,36 @@ class Outcome(NamedTuple):
     """Why it failed; None when it has its result."""
 
 
-def on_this_machine(folder: Path, names: Sequence[str], workers: int) -> Iterator[list[Outcome]]:
+def on_this_machine(folder: Path, names: Sequence[str], workers: int) -> Generator[list[Outcome], None, None]:
     """Do jobs in processes of their own, which end with this one, however it ends.
 
     Yields:
         Every now and then, what has ended since.
     """
     waiting = deque(names)
-    running: dict[str, tuple[subprocess.Popen, IO[bytes]]] = {}
+    running: dict[Future, tuple[str, ProcessPoolExecutor]] = {}
     try:
         while waiting or running:
             while waiting and len(running) < workers:
                 name = waiting.popleft()
-                running[name] = _start(folder, name)
-            time.sleep(POLL_SECONDS)
-            ended = [name for name, (process, _) in running.items() if process.poll() is not None]
-            yield [Outcome(name, _error(*running.pop(name))) for name in ended]
+                # A pool for each job: a process that is killed breaks its pool, and the others are to go on.
+                pool = ProcessPoolExecutor(1, multiprocessing.get_context('spawn'), _begin, (os.getpid(),))
+                running[pool.submit(_do, folder, name)] = name, pool
+            ended, _ = wait(running, POLL_SECONDS, FIRST_COMPLETED)
+            outcomes = []
+            for future in ended:
+                name, pool = running.pop(future)
+                pool.shutdown()
+                outcomes.append(Outcome(name, _reason(future.exception())))
+            yield outcomes
     finally:
-        for process, _ in running.values():
+        for process in multiprocessing.active_children():  # the command has no others
             process.kill()
-            process.wait()
+        for _, pool in running.values():
+            pool.shutdown()
 
 
-def on_ray(folder: Path, names: Sequence[str], address: str) -> Iterator[list[Outcome]]:
+def on_ray(folder: Path, names: Sequence[str], address: str) -> Generator[list[Outcome], None, None]:
     """Do jobs on a Ray cluster, one a core; ``folder`` must be the same for all of its machines.
 
     Yields:
@@ -64,13 +71,8 @@ def on_ray(folder: Path, names: Sequence[str], address: str) -> Iterator[list[Ou
     except (ConnectionError, RuntimeError, ValueError) as error:
         raise OSError(f'no Ray cluster at {address!r}: {error}') from error
     try:
-        @ray.remote(num_cpus=1, max_retries=0)
-        def do(name: str) -> None:
-            from .folder import StudyFolder
-            from .job import run_job
-            run_job(StudyFolder(folder), name)
-
-        running = {do.remote(name): name for name in names}
+        do = ray.remote(num_cpus=1, max_retries=0)(_do)
+        running = {do.remote(folder, name): name for name in names}
         while running:
             ended, _ = ray.wait(list(running), num_returns=len(running), timeout=POLL_SECONDS)
             yield [Outcome(running.pop(reference), _ray_error(ray, reference)) for reference in ended]
@@ -78,28 +80,36 @@ def on_ray(folder: Path, names: Sequence[str], address: str) -> Iterator[list[Ou
         ray.shutdown()
 
 
-def _start(folder: Path, name: str) -> tuple[subprocess.Popen, IO[bytes]]:
-    said = tempfile.TemporaryFile()  # noqa: SIM115 - closed by _error; not in the study's folder: its disk may be full
-    process = subprocess.Popen(
-        [sys.executable, '-m', 'shared_control_records.study.job', str(folder), name], stdin=subprocess.DEVNULL,
-        stdout=said, stderr=said, env={**os.environ, 'OMP_NUM_THREADS': '1'}, process_group=0,
-        preexec_fn=leave_with_the_parent)
-    return process, said
+def _begin(parent: int) -> None:
+    """Prepare a process for its job, before that imports what takes seconds."""
+    leave_with_the_parent()
+    if os.getppid() != parent:
+        raise ProcessLookupError('the study ended while this process began')
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then ends its processes
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):  # libraries greet whoever imports them
+        os.dup2(nowhere, stream)
+    os.environ['OMP_NUM_THREADS'] = '1'
 
 
-def _error(process: subprocess.Popen, said: IO[bytes]) -> str | None:
-    """Why an ended process failed, by its last line; None when it did not."""
-    with said:
-        if process.returncode == 0:
-            return None
-        said.seek(0)
-        lines = said.read().decode(errors='replace').strip().splitlines()
-    return lines[-1] if lines else f'its process ended with code {process.returncode}'
+def _do(folder: Path, name: str) -> None:
+    from .folder import StudyFolder
+    from .job import run_job
+    run_job(StudyFolder(folder), name)
+
+
+def _reason(error: BaseException | None) -> str | None:
+    """Why a job failed, in a line; None when it did not."""
+    if error is None:
+        return None
+    if isinstance(error, BrokenProcessPool):
+        return 'its process was killed, or crashed; it may have been out of memory'
+    return (str(error).strip().splitlines() or [type(error).__name__])[-1]
 
 
 def _ray_error(ray, reference) -> str | None:
     try:
         ray.get(reference)
     except ray.exceptions.RayError as error:
-        return str(getattr(error, 'cause', None) or error).strip().splitlines()[-1]
+        return _reason(getattr(error, 'cause', None) or error)
     return None

@@ -1,10 +1,11 @@
 """How far a real participant has come: ``progress.json``."""
 
-import json
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Annotated
 
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 from shared_control.files import write_atomically
+from shared_control_learning.wrong_content import what_is_wrong
 
 SCALES = {
     'mental': 'Mental demand: how much thinking, deciding and watching did it take?',
@@ -21,18 +22,19 @@ class ProgressError(ValueError):
     """A participant's progress cannot be read; the message names the file."""
 
 
-@dataclass
-class Progress:
+class Progress(BaseModel):
     """What a participant has done; saved after every step, so that any of it can be interrupted."""
 
-    path: Path
+    model_config = ConfigDict(extra='forbid')
+
     consented: str | None = None
     """When; None: not yet."""
     practised: bool = False
-    taught: list[str] = field(default_factory=list)
+    taught: list[str] = []
     """Conditions whose session came to its end."""
-    tlx: dict[str, dict[str, float]] = field(default_factory=dict)
+    tlx: dict[str, dict[str, Annotated[float, Field(ge=0.0, le=100.0)]]] = {}
     """By condition and scale, 0..100."""
+    _path: Path = PrivateAttr()
 
     @classmethod
     def of(cls, person: Path) -> 'Progress':
@@ -43,13 +45,14 @@ class Progress:
         """
         path = person / 'progress.json'
         try:
-            return cls(path, **json.loads(path.read_text()))
+            progress = cls.model_validate_json(path.read_bytes())
         except FileNotFoundError:
-            return cls(path)
-        except (ValueError, TypeError) as error:
-            raise ProgressError(f'{path} is damaged: {error}') from error
+            progress = cls()
+        except ValidationError as error:
+            raise ProgressError(f'{path} is damaged: {what_is_wrong(error)}') from error
+        progress._path = path
+        return progress
 
     def save(self) -> None:
         """Keep it."""
-        content = {key: value for key, value in asdict(self).items() if key != 'path'}
-        write_atomically(self.path, (json.dumps(content, indent=2) + '\n').encode())
+        write_atomically(self._path, (self.model_dump_json(indent=2) + '\n').encode())

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ConfigDict, TypeAdapter, with_config
 from shared_control.files import write_atomically
 from shared_control_learning.evaluation.result import TRACKS, ProtocolResult
+from shared_control_learning.wrong_content import what_is_wrong
 
 from .plan import Job
 
@@ -20,6 +22,7 @@ class ResultError(ValueError):
     """The result of a run cannot be read; the message names the file."""
 
 
+@with_config(ConfigDict(extra='forbid', allow_inf_nan=False, arbitrary_types_allowed=True))
 @dataclass(frozen=True, eq=False)
 class RunResult:
     """A run that is done."""
@@ -53,6 +56,9 @@ class RunResult:
         return f'{self.condition}/p{self.participant:02d}'
 
 
+_RUN_RESULT = TypeAdapter(RunResult)
+
+
 def save_result(result: RunResult, folder: Path) -> None:
     """Keep a result. ``result.json`` comes last and as a whole: a run that has one is done."""
     arrays: dict[str, Any] = {f'{name}/{track}': getattr(test, track).astype(np.float32)
@@ -79,11 +85,11 @@ def load_result(folder: Path) -> RunResult | None:
         names = dict.fromkeys(name.rpartition('/')[0] for name in arrays)
         tests = {name: ProtocolResult(name, **{
             key: arrays[f'{name}/{key}'] for key in ('seconds', *TRACKS, 'fallen', 'success')}) for name in names}
-        return RunResult(**content, tests=tests)
+        return _RUN_RESULT.validate_python({**content, 'tests': tests})
     except FileNotFoundError:
         return None
     except Exception as error:  # a damaged zip or JSON file raises errors of many kinds
-        raise ResultError(f'the result in {folder} is damaged ({error or type(error).__name__}): '
+        raise ResultError(f'the result in {folder} is damaged ({what_is_wrong(error)}): '
                           f'remove {folder / RESULT} and run the study again') from error
 
 

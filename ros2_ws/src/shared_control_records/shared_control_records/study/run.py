@@ -2,7 +2,8 @@
 
 import json
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
+from contextlib import closing
 
 from tqdm import tqdm
 
@@ -34,9 +35,10 @@ def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = Non
         if job.name not in left:
             time_left.learn(job, _seconds(folder, job))
     failed: list[Outcome] = []
-    with tqdm(total=len(jobs), initial=len(jobs) - len(left), unit='run', disable=not sys.stderr.isatty(),
+    with closing(_outcomes(folder, list(left), workers, ray)) as ended, \
+         tqdm(total=len(jobs), initial=len(jobs) - len(left), unit='run', disable=not sys.stderr.isatty(),
               bar_format='{bar} {n_fmt} of {total_fmt} runs, {elapsed}{postfix}') as bar:
-        for outcomes in _outcomes(folder, list(left), workers, ray):
+        for outcomes in ended:
             for outcome in outcomes:
                 job = left.pop(outcome.name)
                 if outcome.error:
@@ -54,7 +56,8 @@ def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = Non
                          f'{folder.path}; start the same command again to do the rest.')
 
 
-def _outcomes(folder: StudyFolder, names: Sequence[str], workers: int, ray: str | None) -> Iterator[list[Outcome]]:
+def _outcomes(folder: StudyFolder, names: Sequence[str], workers: int,
+              ray: str | None) -> Generator[list[Outcome], None, None]:
     path = folder.path.absolute()
     return on_this_machine(path, names, workers) if ray is None else on_ray(path, names, ray)
 

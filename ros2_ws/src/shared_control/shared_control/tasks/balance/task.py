@@ -92,14 +92,18 @@ class Balance(Task):
     """Mean |velocity| of a success, m/s; that of the position error is the scene's ``goal_radius``."""
 
     def __post_init__(self) -> None:
-        positive = {'episode_seconds': self.episode_seconds, 'action_scale': self.action_scale,
-                    'moment_limit': self.moment_limit, 'reward_scale': self.reward_scale,
-                    'position_error_max_squared': self.position_error_max_squared}
-        for number, scale in enumerate(self.observation_scales or ()):
-            positive[f'observation_scales[{number}]'] = scale
+        positive = {name: getattr(self, name) for name in (
+            'episode_seconds', 'action_scale', 'moment_limit', 'reward_scale', 'position_error_max_squared')}
+        positive |= {f'observation_scales[{number}]': scale
+                     for number, scale in enumerate(self.observation_scales or ())}
         for name, value in positive.items():
             if not 0.0 < value < math.inf:
                 raise ValueError(f'{name} is {value}, expected a finite number above 0')
+        for name in ('weight_pitch', 'weight_velocity', 'weight_margin', 'weight_position', 'weight_manipulability'):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise ValueError(f'{name} is {getattr(self, name)}, expected a finite number of at least 0')
+        if not -math.inf < self.rate_centre <= 0.0:
+            raise ValueError(f'rate_centre is {self.rate_centre}, expected a finite number of at most 0')
 
     @property
     def scale(self) -> np.ndarray:

@@ -1,0 +1,144 @@
+"""What the YAML file of a plan may say; docs/study.md."""
+
+import re
+from typing import Annotated, Any, Literal, get_args
+
+import yaml
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, field_validator, model_validator
+from shared_control.teaching.profiles import profile
+from shared_control_learning.presets import preset
+from shared_control_learning.wrong_content import shortened
+
+Test = Literal['randomized', 'perturbation', 'trajectory']
+TESTS: tuple[Test, ...] = get_args(Test)
+SIZE_MAX = 2**20
+"""Bytes; a plan takes less than a thousand."""
+SESSION_OPTIONS = ('--params-file', '--tutor', '--page', '--no-screen')
+"""What a plan may add to sessions of real participants: nothing that names another folder, seed or preset."""
+
+
+def _known_preset(name: str) -> str:
+    return preset(name).name
+
+
+def _known_profile(name: str) -> str:
+    profile(name)
+    return name
+
+
+def _folder_name(name: str) -> str:
+    if not name.replace('_', '').replace('-', '').isalnum():
+        raise ValueError('a condition is named by letters, digits, _ and -')
+    return name
+
+
+def _plain(text: str) -> str:
+    if re.search(r'[\x00-\x08\x0b-\x1f\x7f-\x9f]', text):
+        raise ValueError('a text that a terminal shows must not have control characters')
+    return text
+
+
+def _session_option(text: str) -> str:
+    if text.startswith('-') and text.partition('=')[0] not in SESSION_OPTIONS:
+        raise ValueError(f'{shortened(text)} is none of the options {", ".join(SESSION_OPTIONS)}')
+    return text
+
+
+Name = Annotated[str, Field(max_length=60)]
+Count = Annotated[int, Field(ge=1, le=1000)]
+Episodes = Annotated[int, Field(ge=1, le=100_000)]
+
+
+class Section(BaseModel):
+    """A part of a plan."""
+
+    model_config = ConfigDict(strict=True, frozen=True, allow_inf_nan=False)
+
+    @model_validator(mode='before')
+    @classmethod
+    def _knows_all_keys(cls, content: Any) -> Any:
+        unknown = [key for key in content if key not in cls.model_fields] if isinstance(content, dict) else []
+        if unknown:
+            raise ValueError(f'no key {shortened(unknown[0])}; there are {", ".join(sorted(cls.model_fields))}')
+        return content
+
+
+class Learning(Section):
+    """What a plan says of a condition."""
+
+    preset: Annotated[Name, AfterValidator(_known_preset)]
+    """An entry point of ``shared_control.learners``; the condition's name when the plan does not say."""
+    episodes: Episodes = 20
+    """Training ends here for who is not skilled by then."""
+    taught: bool = True
+    """Whether the participant teaches; otherwise the robot learns alone, from the same seed."""
+    evaluate_every: Episodes = 1
+    """Episodes between two tests of whether the robot is skilled."""
+
+
+class People(Section):
+    """What real participants do."""
+
+    real: Count
+    """How many there are."""
+    consent: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1), AfterValidator(_plain)]
+    """The text that they agree to before anything is recorded."""
+    practice_episodes: Annotated[int, Field(ge=0, le=1000)] = 2
+    """To get to know the keys; kept apart."""
+    minutes: Annotated[float, Field(ge=0.1, le=1440.0)] = 45.0
+    """Of teaching in each condition, at the most (3.4)."""
+    session_options: list[Annotated[str, AfterValidator(_session_option)]] = []
+    """Some of ``SESSION_OPTIONS``, with their values."""
+
+
+class Simulated(Section):
+    """Who is simulated."""
+
+    simulated: Annotated[dict[Annotated[Name, AfterValidator(_known_profile)], Count], Field(min_length=1)]
+    """How many around each profile."""
+    spread: Annotated[float, Field(ge=0.0, le=2.0)] = 0.15
+    """How far individuals differ from their profile."""
+
+
+class PlanFile(Section):
+    """The whole file."""
+
+    seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
+    participants: Simulated | People
+    conditions: Annotated[
+        dict[Annotated[Name, AfterValidator(_folder_name)], Learning], Field(min_length=1, max_length=100)]
+    tests: Annotated[list[Test], Field(max_length=len(TESTS))] = list(TESTS)
+
+    @field_validator('participants', mode='plain')
+    @classmethod
+    def _real_or_simulated(cls, content: Any) -> Simulated | People:
+        kind = People if isinstance(content, dict) and 'real' in content else Simulated
+        return kind.model_validate(content)
+
+    @field_validator('conditions', mode='before')
+    @classmethod
+    def _named_as_the_preset(cls, content: Any) -> Any:
+        if not isinstance(content, dict):
+            return content
+        return {name: {'preset': name, **(settings or {})} if isinstance(settings, dict | None) else settings
+                for name, settings in content.items()}
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML without aliases: plans need none, and a few of them can stand for more than a memory holds."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            raise ValueError(f'line {self.peek_event().start_mark.line + 1}: aliases (*name) are not for plans')
+        return super().compose_node(parent, index)
+
+
+def parse(text: bytes) -> PlanFile:
+    """The content of a plan's file.
+
+    Raises:
+        ValueError, yaml.YAMLError, RecursionError: it is none.
+    """
+    if len(text) > SIZE_MAX:
+        raise ValueError(f'more than {SIZE_MAX} bytes are no plan')
+    return PlanFile.model_validate(yaml.load(text, _Loader))
