@@ -62,7 +62,7 @@ class Robot:
                     assert not fallen
             except PlantInterrupted:  # the machine was busy for a second: the agent begins anew, too
                 continue
-            return [s.position_error for s in states], [s.ball_velocity for s in states]
+            return [s.position_error for s in states], [s.velocity for s in states]
 
     def spin(self, until, what=''):
         self.observer.spin(until, 60.0, what)
