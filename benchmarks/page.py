@@ -7,7 +7,6 @@ with a graphics card draws for nothing.
 
 import json
 import os
-import re
 import tempfile
 import time
 from collections.abc import Iterator
@@ -22,12 +21,14 @@ from rclpy.context import Context
 from rclpy.node import Node
 from selenium.webdriver.common.keys import Keys
 from shared_control_bringup import parameters
+from shared_control_bringup.graph import Role, nodes_of, overrides
 from shared_control_bringup.node_process import NodeProcess
+from shared_control_bringup.settings import Settings
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from shared_control_testing.page import Browser
+from teach_page_node.address import free_port, page_address
 
-NODES = ('torque_ctrl_node', 'panda_sim_node', 'teleop_key_node', 'teach_page_node', 'ppo_agent_node')
 WINDOW = (800, 600)
 PRESSES = 60
 SECONDS = 20.0
@@ -42,28 +43,22 @@ def session(domain: int) -> Iterator[str]:
     """The nodes of a session that practises; the page's address."""
     os.environ['ROS_DOMAIN_ID'] = str(domain)
     with tempfile.TemporaryDirectory() as folder:
-        content = parameters.load()
-        content['ppo_agent_node'].update(practice=True)
-        content['teleop_key_node'].update(screen='off')
-        content['teach_page_node'] = {'port': 0}
+        settings = Settings(tutor='page', page=('127.0.0.1', free_port('127.0.0.1')))
         file = Path(folder) / 'parameters.yaml'
-        parameters.save(content, file)
-        nodes = {name: NodeProcess(name, file, Path(folder) / f'{name}.log', in_real_time=True) for name in NODES}
+        given = overrides(settings, Path(folder), shows_screen=False)
+        parameters.save(parameters.lay_over(parameters.load(), given), file)
+        nodes = [NodeProcess(node.name, file, Path(folder) / f'{node.name}.log', in_real_time=True,
+                             in_control_loop=node.role is Role.CONTROL_LOOP)
+                 for node in nodes_of(settings.tutor) if node.name != 'session_recorder_node']
         try:
-            for node in nodes.values():
+            for node in nodes:
                 node.start()
                 node.wait_ready(60.0)
-            yield _address(nodes['teach_page_node'].log)
+            yield page_address(*settings.page, token=None)
         finally:
-            for node in reversed(nodes.values()):
+            for node in reversed(nodes):
                 node.interrupt()
                 node.wait(10.0)
-
-
-def _address(log: Path) -> str:
-    while not (found := re.search(r'open (http\S+)', log.read_text())):
-        time.sleep(0.1)
-    return found[1]
 
 
 class Ear:

@@ -1,5 +1,6 @@
 """The files for Docker, as far as they can be checked without an engine: nothing here builds or runs an image."""
 
+import ast
 import json
 import re
 import shlex
@@ -7,10 +8,15 @@ import shutil
 import subprocess
 import sys
 from fnmatch import fnmatch
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 import yaml
+from shared_control_bringup.graph import Role, nodes_of, overrides
+from shared_control_bringup.node_process import LOOP_PRIORITY
+from shared_control_bringup.parameters import load
+from shared_control_bringup.settings import Settings
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / 'ros2_ws' / 'src'
@@ -91,6 +97,37 @@ def test_a_service_is_a_node_that_exists(name):
     assert f'/{words[0]}' in ''.join(yaml.safe_load(file.read_text()))
     assert all(value.startswith('out/') for value in re.findall(r'output:=(\S+)', service['command']))
     assert set(service.get('depends_on', [])) <= set(COMPOSE['services'])
+
+
+def test_the_services_are_a_session_with_a_simulated_tutor():
+    """Who takes part, what each is given, and who runs in the control loop: as the table of a session has it."""
+    taking_part = {}
+    for service in COMPOSE['services'].values():
+        if 'profiles' not in service:
+            words = shlex.split(service['command'])
+            taking_part[next(word for word in words if word in SCRIPTS)] = words
+    nodes = nodes_of('sim')
+    assert set(taking_part) == {node.name for node in nodes}
+    expected = overrides(Settings(tutor='sim', episodes=6), Path('out/docker'), shows_screen=False)
+    for node in nodes:
+        words = taking_part[node.name]
+        assert (words[:3] == ['chrt', '--fifo', str(LOOP_PRIORITY)]) is (node.role is Role.CONTROL_LOOP)
+        given = dict(word.split(':=', 1) for flag, word in pairwise(words) if flag == '-p')
+        found = {**declared_defaults(node.name), **load()[node.name],
+                 **{name: yaml.safe_load(value) if name != 'screen' else value for name, value in given.items()}}
+        for name, value in expected[node.name].items():
+            assert found[name] == value, f'{node.name}: {name}'
+
+
+def declared_defaults(package):
+    """Default values of a node's parameters, as far as they are literals."""
+    found = {}
+    for path in (SOURCES / package / package).glob('*.py'):
+        for call in ast.walk(ast.parse(path.read_text())):
+            if isinstance(call, ast.Call) and ast.unparse(call.func) == 'declare' and isinstance(
+                    call.args[2], ast.Constant):
+                found[call.args[1].value] = call.args[2].value
+    return found
 
 
 @pytest.mark.parametrize('name', COMPOSE['services'])

@@ -1,21 +1,28 @@
-"""One node of the graph alone, with the parameters of a session, started again when it dies."""
+"""One node of the graph alone, with the parameters of a session, started again when it dies.
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+The controller starts disabled here, and again when it has died: a person calls controller/enable.
+"""
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from shared_control_bringup.graph import ALL_NODES, ALONE
 from shared_control_bringup.launching import common_arguments, end_with, environment, graph_node, in_namespace
 
-NODES = [
-    'panda_sim_node', 'mock_panda_node', 'panda_bridge_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node',
-    'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'teach_page_node']
+
+def start_node(context: LaunchContext) -> list[Node]:
+    """The node that the argument names."""
+    name = LaunchConfiguration('node').perform(context)
+    return [graph_node(name, parameters=ALONE.get(name), output='screen')]
 
 
 def generate_launch_description() -> LaunchDescription:
     """See the module."""
     return LaunchDescription([
-        DeclareLaunchArgument('node', choices=NODES, description='Its package and executable.'),
+        DeclareLaunchArgument('node', choices=list(ALL_NODES), description='Its package and executable.'),
         *common_arguments(),
         *environment(),
-        in_namespace([graph_node(LaunchConfiguration('node'), output='screen')]),
+        in_namespace([OpaqueFunction(function=start_node)]),
         end_with('ppo_agent_node'),
     ])

@@ -1,19 +1,20 @@
 """A session: simulator, controller, keys, agent, recorder. It ends when the agent is done.
 
 With ``tutor:=keyboard`` the teaching screen takes the terminal of the launch, and what the nodes say goes to launch's
-log folder. ``shared-control session`` does the same without launch, tests the policy and writes a report as well.
+log folder. ``shared-control session`` starts the same nodes without launch, tests the policy and writes a report as
+well.
 """
 
 import time
+from pathlib import Path
 
-from launch import LaunchContext, LaunchDescription, SomeSubstitutionsType
+from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
-from launch.conditions import IfCondition
-from launch.substitutions import EqualsSubstitution, IfElseSubstitution, LaunchConfiguration, PathJoinSubstitution
+from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
 from shared_control.plugins import LEARNERS, names
 from shared_control.teaching.profiles import PROFILES
+from shared_control_bringup.graph import Role, named, nodes_of, overrides
 from shared_control_bringup.launching import (
     common_arguments,
     end_with,
@@ -23,23 +24,30 @@ from shared_control_bringup.launching import (
     view,
     view_argument,
 )
-from shared_control_learning.presets import preset
+from shared_control_bringup.settings import TUTORS, Settings
+from shared_control_ros.host_and_port import host_and_port
 
 
-def controller(context: LaunchContext, output: SomeSubstitutionsType) -> list[Node]:
-    """The controller, with the limit of the task that the preset learns."""
-    limit = preset(LaunchConfiguration('preset').perform(context)).task.limit.max()
-    return [graph_node('torque_ctrl_node', parameters={'moment_limit': limit}, output=output)]
+def start_nodes(context: LaunchContext) -> list[Node]:
+    """The nodes of the session that the arguments describe."""
+    settings = Settings(
+        tutor=LaunchConfiguration('tutor').perform(context),
+        profile=LaunchConfiguration('profile').perform(context),
+        preset=LaunchConfiguration('preset').perform(context),
+        episodes=int(LaunchConfiguration('episodes').perform(context)),
+        minutes=float(LaunchConfiguration('minutes').perform(context)),
+        seed=int(LaunchConfiguration('seed').perform(context)),
+        page=host_and_port(LaunchConfiguration('page').perform(context)))
+    by_hand = settings.tutor == 'keyboard'
+    given = overrides(settings, Path(LaunchConfiguration('output').perform(context)), shows_screen=by_hand)
+    return [graph_node(node.name, parameters=given[node.name], output='own_log' if by_hand else 'screen')
+            for node in nodes_of(settings.tutor)]
 
 
 def generate_launch_description() -> LaunchDescription:
     """See the module."""
-    tutor, output = LaunchConfiguration('tutor'), LaunchConfiguration('output')
-    by_hand, in_browser, simulated = (EqualsSubstitution(tutor, choice) for choice in ('keyboard', 'page', 'sim'))
-    seed = ParameterValue(LaunchConfiguration('seed'), value_type=int)
-    said = IfElseSubstitution(by_hand, 'own_log', 'screen')
     return LaunchDescription([
-        DeclareLaunchArgument('tutor', default_value='keyboard', choices=['keyboard', 'page', 'sim', 'none'],
+        DeclareLaunchArgument('tutor', default_value='keyboard', choices=list(TUTORS),
                               description='Who teaches: you, here or in a browser, a simulated tutor, or nobody.'),
         DeclareLaunchArgument('profile', default_value='expert', choices=list(PROFILES),
                               description='Of the simulated tutor.'),
@@ -47,28 +55,16 @@ def generate_launch_description() -> LaunchDescription:
                               description='What is learned and how.'),
         DeclareLaunchArgument('episodes', default_value='0',
                               description='Teach this many, then test; 0: until somebody says that it has learned it.'),
+        DeclareLaunchArgument('minutes', default_value='45.0', description='Teach for this long at the most.'),
         DeclareLaunchArgument('seed', default_value='0', description='Of ball starts, learner and simulated tutor.'),
+        DeclareLaunchArgument('page', default_value='127.0.0.1:8088',
+                              description='HOST:PORT of the page; another host than loopback opens it, with a token.'),
         DeclareLaunchArgument('output', default_value=time.strftime('out/sessions/%Y-%m-%d_%H-%M-%S'),
                               description='Folder for bag/ and learner/.'),
         *common_arguments(),
         view_argument(),
         *environment(),
-        in_namespace([
-            graph_node('session_recorder_node', parameters={'output': PathJoinSubstitution([output, 'bag'])},
-                       output=said),
-            OpaqueFunction(function=controller, args=[said]),
-            graph_node('panda_sim_node', parameters={'seed': seed}, output=said),
-            graph_node('teleop_key_node', parameters={'screen': IfElseSubstitution(by_hand, 'auto', 'off')},
-                       output=said),
-            graph_node('teach_page_node', output=said, condition=IfCondition(in_browser)),
-            graph_node('sim_tutor_node', parameters={'profile': LaunchConfiguration('profile'), 'seed': seed},
-                       output=said, condition=IfCondition(simulated)),
-            graph_node('ppo_agent_node', parameters={
-                'preset': LaunchConfiguration('preset'), 'seed': seed,
-                'episodes': ParameterValue(LaunchConfiguration('episodes'), value_type=int),
-                'practice': ParameterValue(in_browser, value_type=bool),
-                'output': PathJoinSubstitution([output, 'learner'])}, output=said),
-        ]),
+        in_namespace([OpaqueFunction(function=start_nodes)]),
         view(),
-        end_with('ppo_agent_node', 'teach_page_node'),
+        end_with(*named(Role.LEADER, Role.STOPPER)),
     ])

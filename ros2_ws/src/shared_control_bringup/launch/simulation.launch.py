@@ -1,6 +1,7 @@
 """The simulated robot under its controller, and nobody to teach it."""
 
 from launch import LaunchDescription
+from shared_control_bringup.graph import BESIDE_A_SIMULATOR
 from shared_control_bringup.launching import (
     common_arguments,
     end_with,
@@ -19,7 +20,7 @@ def generate_launch_description() -> LaunchDescription:
         view_argument(),
         *environment(),
         in_namespace([
-            graph_node('torque_ctrl_node', output='screen'),
+            graph_node('torque_ctrl_node', parameters=BESIDE_A_SIMULATOR, output='screen'),
             graph_node('panda_sim_node', output='screen'),
         ]),
         view(),

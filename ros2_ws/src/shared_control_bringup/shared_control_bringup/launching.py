@@ -17,6 +17,7 @@ from launch.event_handlers import OnProcessExit
 from launch.events.process import ProcessExited
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node, PushRosNamespace
+from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 from shared_control_ros.processes import node_environment
 
@@ -31,7 +32,8 @@ SHARE = FindPackageShare('shared_control_bringup')
 def common_arguments() -> list[DeclareLaunchArgument]:
     """Arguments of every launch file that starts nodes of the graph."""
     return [
-        DeclareLaunchArgument('params_file', default_value=str(DEFAULTS), description='ROS parameters of all nodes.'),
+        DeclareLaunchArgument('params_file', default_value=str(DEFAULTS),
+                              description='ROS parameters of all nodes, laid over the defaults.'),
         DeclareLaunchArgument('namespace', default_value='', description='Of all nodes and topics but /clock and /tf.'),
     ]
 
@@ -51,11 +53,14 @@ def environment() -> list[SetEnvironmentVariable]:
 def graph_node(package: SomeSubstitutionsType, *, parameters: dict[str, Any] | None = None, **options: Any) -> Node:
     """A node of the graph: package and executable of one name, the parameter file, started again when it dies.
 
-    ``parameters`` come before those of the file; ``options`` go to ``launch_ros.actions.Node``.
+    The file is laid over the defaults, and ``parameters`` over the file; ``options`` go to ``launch_ros.actions.Node``.
     """
-    files: list[Any] = [LaunchConfiguration('params_file')]
+    # A bare string would be read as YAML: a folder called 7 would become a number.
+    given = {name: ParameterValue(value, value_type=str) if isinstance(value, str) else value
+             for name, value in (parameters or {}).items()}
+    files: list[Any] = [str(DEFAULTS), LaunchConfiguration('params_file')]
     return Node(
-        package=package, executable=package, parameters=files + ([parameters] if parameters else []),
+        package=package, executable=package, parameters=files + ([given] if given else []),
         respawn=True, respawn_delay=RESPAWN_DELAY, **options)
 
 

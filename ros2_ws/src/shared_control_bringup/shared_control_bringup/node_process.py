@@ -1,16 +1,17 @@
 """One node of the graph as a process."""
 
 import os
+import select
 import signal
 import subprocess
 import sys
-import time
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from shared_control_ros.processes import leave_with_the_parent, node_environment
+from shared_control_ros.readiness import READY_FD
 
-CONTROL_LOOP = ('panda_sim_node', 'torque_ctrl_node')
 LOOP_PRIORITY = 50
 """Real-time priority of the control loop (SCHED_FIFO), where `ulimit -r` allows it; that of ros2_control."""
 NICENESS = 10
@@ -27,29 +28,39 @@ class NodeProcess:
         parameters: ROS parameter file.
         log: where stdout and stderr go, appended.
         in_foreground: stay in this process' group, so that the node can use the terminal.
+        in_control_loop: give it the core of the control loop.
         in_real_time: give the control loop real-time priority; an unpaced one would take its core from all others.
+        environment: variables that this node alone is given.
     """
 
-    def __init__(self, name: str, parameters: Path, log: Path, in_foreground: bool = False,
-                 in_real_time: bool = False):
+    def __init__(self, name: str, parameters: Path, log: Path, *, in_foreground: bool = False,
+                 in_control_loop: bool = False, in_real_time: bool = False,
+                 environment: Mapping[str, str] | None = None):
         self.name = name
+        self._in_control_loop = in_control_loop
         self._in_real_time = in_real_time
+        self._environment = dict(environment or {})
         self.log = log
         self.starts = 0
         self._command = [sys.executable, '-m', f'{name}.node', '--ros-args', '--params-file', str(parameters),
                          '--disable-external-lib-logs']
         self._in_foreground = in_foreground
         self._process: subprocess.Popen | None = None
-        self._log_start = 0
+        self._ready_pipe: int | None = None
 
     def start(self) -> None:
         """Start it, or start it again."""
         self.starts += 1
-        self._log_start = self.log.stat().st_size if self.log.exists() else 0
-        with self.log.open('ab') as log:
-            self._process = subprocess.Popen(
-                self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=node_environment(),
-                process_group=None if self._in_foreground else 0, preexec_fn=self._prepare)
+        self._close_ready_pipe()
+        self._ready_pipe, theirs = os.pipe()
+        environment = {**node_environment(), **self._environment, READY_FD: str(theirs)}
+        try:
+            with self.log.open('ab') as log:
+                self._process = subprocess.Popen(
+                    self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment,
+                    pass_fds=(theirs,), process_group=None if self._in_foreground else 0, preexec_fn=self._prepare)
+        finally:
+            os.close(theirs)  # the node's end alone is left: its death ends the waiting
 
     @property
     def pid(self) -> int:
@@ -65,7 +76,7 @@ class NodeProcess:
         """
         leave_with_the_parent()
         *others, last = sorted(os.sched_getaffinity(0))
-        if self.name in CONTROL_LOOP:
+        if self._in_control_loop:
             os.sched_setaffinity(0, {last})
             if others and self._in_real_time:
                 with suppress(PermissionError):
@@ -75,13 +86,18 @@ class NodeProcess:
         else:
             os.nice(NICENESS)
 
-    def wait_ready(self, seconds: float) -> None:
-        """Wait until it says that it is ready, has ended, or the time is over."""
-        deadline = time.monotonic() + seconds
-        while self.exit_code() is None and time.monotonic() < deadline:
-            if b'ready' in self.log.read_bytes()[self._log_start:]:
-                return
-            time.sleep(0.05)
+    def wait_ready(self, seconds: float) -> bool:
+        """Wait until it says that it is ready, has ended, or the time is over; whether it is ready."""
+        if self._ready_pipe is None or not select.select([self._ready_pipe], [], [], seconds)[0]:
+            return False
+        said = os.read(self._ready_pipe, 64)
+        self._close_ready_pipe()
+        return bool(said)
+
+    def _close_ready_pipe(self) -> None:
+        if self._ready_pipe is not None:
+            os.close(self._ready_pipe)
+            self._ready_pipe = None
 
     def exit_code(self) -> int | None:
         """None while it runs."""
@@ -101,6 +117,7 @@ class NodeProcess:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
+        self._close_ready_pipe()
 
     def last_error(self) -> str:
         """The last line it wrote that says something."""

@@ -1,33 +1,59 @@
-"""The parameters of a session: the file that comes with the package, and what the options change in it."""
+"""The parameters of a session: the file that comes with the package, a file that is laid over it, and overrides."""
 
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from .graph import ALL_NODES
+
 DEFAULTS = Path(__file__).parent / 'config' / 'session.yaml'
+ANY_NODE = '/**'
+"""Where a parameter file has values for all nodes."""
 
 
 def load(path: Path = DEFAULTS) -> dict[str, dict[str, Any]]:
-    """Parameters by node; a node named for any namespace (``/**/NODE``) appears under its name.
+    """Parameters by node: the defaults, with the values of a file laid over them.
+
+    A node named for any namespace (``/**/NODE``) appears under its name.
 
     Raises:
-        ValueError: the file is not a ROS parameter file; the message names it.
+        ValueError: the file is not a ROS parameter file, or names a node that does not exist; the message names it.
         OSError: it cannot be read.
     """
-    try:
-        content = yaml.safe_load(path.read_text())
-    except yaml.YAMLError as error:
-        raise ValueError(f'{path} is not valid YAML: {error}') from error
-    if not isinstance(content, dict):
-        raise ValueError(f'{path} is not a ROS parameter file: expected NODE: ros__parameters: NAME: VALUE')
-    for node, section in content.items():
-        if not isinstance(section, dict) or not isinstance(section.get('ros__parameters'), dict):
-            raise ValueError(f'{path}: node {node!r} has no ros__parameters')
-    return {node.removeprefix('/**/'): dict(section['ros__parameters']) for node, section in content.items()}
+    given = _read(path)
+    everywhere = given.pop(ANY_NODE, None)
+    parameters = _read(DEFAULTS)
+    if everywhere:
+        parameters = lay_over(parameters, dict.fromkeys(ALL_NODES, everywhere))
+    return lay_over(parameters, given)
+
+
+def lay_over(parameters: dict[str, dict[str, Any]], values: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """A copy of ``parameters`` with ``values`` in it, both by node."""
+    return {node: {**parameters.get(node, {}), **values.get(node, {})} for node in (*parameters, *values)}
 
 
 def save(parameters: dict[str, dict[str, Any]], path: Path) -> None:
     """Write a ROS parameter file."""
     content = {node: {'ros__parameters': values} for node, values in parameters.items()}
     path.write_text(yaml.safe_dump(content, sort_keys=False))
+
+
+def _read(path: Path) -> dict[str, dict[str, Any]]:
+    """The parameters in a file, by node."""
+    try:
+        content = yaml.safe_load(path.read_text())
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ValueError(f'{path} is not valid YAML: {error}') from error
+    if not isinstance(content, dict):
+        raise ValueError(f'{path} is not a ROS parameter file: expected NODE: ros__parameters: NAME: VALUE')
+    parameters = {}
+    for key, section in content.items():
+        node = str(key).removeprefix(ANY_NODE + '/').removeprefix('/') if key != ANY_NODE else ANY_NODE
+        if node not in (*ALL_NODES, ANY_NODE):
+            raise ValueError(f'{path}: there is no node {key!r}; there are {", ".join(ALL_NODES)}')
+        if not isinstance(section, dict) or not isinstance(section.get('ros__parameters'), dict):
+            raise ValueError(f'{path}: node {key!r} has no ros__parameters')
+        parameters[node] = dict(section['ros__parameters'])
+    return parameters

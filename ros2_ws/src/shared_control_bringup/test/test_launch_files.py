@@ -1,4 +1,4 @@
-"""The launch files: built where ``launch`` is installed, and read with ``ast`` anywhere."""
+"""The launch files: built where ``launch`` is installed, and anywhere read with ``ast`` and built with a stand-in."""
 
 import ast
 import importlib.util
@@ -6,14 +6,21 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 from xml.etree import ElementTree
 
 import pytest
+from shared_control_bringup.graph import ALL_NODES, overrides
+from shared_control_bringup.parameters import DEFAULTS, load
+from shared_control_bringup.settings import TUTORS, Settings
 
 PACKAGE = Path(__file__).parents[1]
 PACKAGES = PACKAGE.parent
 FILES = sorted((PACKAGE / 'launch').glob('*.launch.py'))
 LAUNCHING = ast.parse((PACKAGE / 'shared_control_bringup' / 'launching.py').read_text())
+ARGUMENTS = {
+    'tutor': 'keyboard', 'profile': 'expert', 'preset': 'coached', 'episodes': '0', 'minutes': '45', 'seed': '0',
+    'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node'}
 HELPERS = {item.name: item for item in LAUNCHING.body if isinstance(item, ast.FunctionDef)}
 
 
@@ -54,6 +61,64 @@ def console_scripts(package):
     return re.findall(r"'(\S+) = \S+:main'", setup.read_text()) if setup.exists() else []
 
 
+class StandIn:
+    """Any class of ``launch`` or ``launch_ros``: remembers how it was made."""
+
+    def __init__(self, *args, **kwargs):
+        self.args, self.kwargs = args, kwargs
+
+    def perform(self, context):
+        """As a LaunchConfiguration or a PathJoinSubstitution."""
+        return context[self.args[0]]
+
+
+def nodes_in(item, context):
+    """Nodes that an action starts, in their order."""
+    if isinstance(item, list | tuple):
+        return [node for part in item for node in nodes_in(part, context)]
+    if not isinstance(item, StandIn):
+        return []
+    if type(item).__name__ == 'Node':
+        return [item]
+    if type(item).__name__ == 'OpaqueFunction':
+        return nodes_in(item.kwargs['function'](context), context)
+    return nodes_in(item.args, context)
+
+
+def given_to(node):
+    """Parameters that a launch file gives a node on top of its files."""
+    values = node.kwargs['parameters'][-1]
+    return {name: value.args[0] if isinstance(value, StandIn) else value for name, value in values.items()
+            } if isinstance(values, dict) else {}
+
+
+@pytest.fixture
+def started(monkeypatch):
+    """``started(file, **arguments)``: the nodes that a launch file starts, with a stand-in for ``launch``."""
+    for name in ('launch', 'launch.actions', 'launch.conditions', 'launch.event_handlers', 'launch.events.process',
+                 'launch.substitutions', 'launch_ros.actions', 'launch_ros.parameter_descriptions',
+                 'launch_ros.substitutions'):
+        module = ModuleType(name)
+        module.__getattr__ = lambda attribute: type(attribute, (StandIn,), {})
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.setitem(sys.modules, 'shared_control_bringup.launching', loaded(
+        PACKAGE / 'shared_control_bringup' / 'launching.py', 'shared_control_bringup.launching'))
+
+    def start(file, **arguments):
+        description = loaded(PACKAGE / 'launch' / file).generate_launch_description()
+        return nodes_in(description.args, arguments)
+
+    return start
+
+
+def loaded(path, name=''):
+    """The module in a file."""
+    spec = importlib.util.spec_from_file_location(name or path.stem.replace('.', '_'), path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 @pytest.fixture(params=FILES, ids=lambda path: path.name)
 def tree(request):
     return ast.parse(request.param.read_text())
@@ -71,16 +136,37 @@ def test_helpers_and_the_names_they_are_called_by_exist(tree):
             assert {name.name for name in item.names} <= known
 
 
-def test_nodes_and_their_parameters_exist(tree):
-    for call in calls(tree, 'graph_node'):
-        if not isinstance(call.args[0], ast.Constant):
-            continue
-        package = call.args[0].value
-        assert console_scripts(package) == [package]
-        for keyword in call.keywords:
-            if keyword.arg == 'parameters':
-                names = {key.value for key in keyword.value.keys if key is not None}
-                assert names <= parameters_of(package), package
+def test_nodes_and_their_parameters_exist(started):
+    for path in FILES:
+        for node in started(path.name, **{**ARGUMENTS, 'tutor': 'sim'}):
+            package = node.kwargs['package']
+            if (PACKAGES / package).is_dir():
+                assert console_scripts(package) == [package] == [node.kwargs['executable']]
+                assert set(given_to(node)) <= parameters_of(package), package
+
+
+@pytest.mark.parametrize('tutor', TUTORS)
+def test_a_launch_starts_the_nodes_that_a_session_starts(started, tutor):
+    arguments = {**ARGUMENTS, 'tutor': tutor, 'seed': '7', 'page': '0.0.0.0:9000'}
+    nodes = started('session.launch.py', **arguments)
+    settings = Settings(tutor=tutor, seed=7, page=('0.0.0.0', 9000))
+    expected = overrides(settings, Path('out/session'), shows_screen=tutor == 'keyboard')
+    assert {node.kwargs['package']: given_to(node) for node in nodes} == expected
+    assert [node.kwargs['package'] for node in nodes] == list(expected)
+    assert all(node.kwargs['parameters'][0] == str(DEFAULTS) for node in nodes)
+
+
+def test_the_controller_is_enabled_beside_a_simulator_only(started):
+    assert all('enabled' not in values for values in load().values())
+    for path in FILES:
+        nodes = {node.kwargs['package']: given_to(node) for node in started(path.name, **ARGUMENTS)}
+        if 'torque_ctrl_node' in nodes:
+            assert nodes['torque_ctrl_node']['enabled'] is ('panda_sim_node' in nodes), path.name
+    # When it is started again it has the same parameters: alone it stays disabled whatever the file says.
+    alone, = started('node.launch.py', node='torque_ctrl_node')
+    assert alone.kwargs['respawn'] is True and given_to(alone) == {'enabled': False}
+    other, = started('node.launch.py', node='teleop_key_node')
+    assert given_to(other) == {}
 
 
 def test_files_in_the_share_folder_exist(tree):
@@ -99,12 +185,9 @@ def test_views_are_started_with_arguments_that_they_have(tree):
 
 
 def test_one_node_alone_can_be_any_node():
-    tree = ast.parse((PACKAGE / 'launch' / 'node.launch.py').read_text())
-    listed = next(ast.literal_eval(item.value) for item in tree.body
-                  if isinstance(item, ast.Assign) and item.targets[0].id == 'NODES')
     depends = ElementTree.parse(PACKAGE / 'package.xml').iter('exec_depend')
-    assert sorted(listed) == sorted(depend.text for depend in depends if depend.text.endswith('_node'))
-    assert all(console_scripts(node) == [node] for node in listed)
+    assert sorted(ALL_NODES) == sorted(depend.text for depend in depends if depend.text.endswith('_node'))
+    assert all(console_scripts(node) == [node] for node in ALL_NODES)
 
 
 def test_the_readme_lists_the_files_and_their_arguments():
@@ -132,10 +215,7 @@ def test_launch_files_need_no_packages_from_pip():
 def test_the_description_builds(path):
     # Not 'launch' alone: started in the package's folder, Python takes its launch/ for a package.
     pytest.importorskip('launch_ros.actions', reason='PyPI has no launch; a ROS install has')
-    spec = importlib.util.spec_from_file_location(path.stem.replace('.', '_'), path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    description = module.generate_launch_description()
+    description = loaded(path).generate_launch_description()
     arguments = {argument.name: argument.description for argument, inclusions
                  in description.get_launch_arguments_with_include_launch_description_actions() if not inclusions}
     expected = declared(ast.parse(path.read_text()))

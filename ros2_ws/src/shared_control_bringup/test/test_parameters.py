@@ -18,6 +18,7 @@ def test_what_is_saved_can_be_loaded(tmp_path):
 @pytest.mark.parametrize(('content', 'said'), [
     ('a: [', 'not valid YAML'),
     ('- 1', 'not a ROS parameter file'),
+    ('panda_sim: {ros__parameters: {mode: lockstep}}', "there is no node 'panda_sim'; there are .*panda_sim_node"),
     ('panda_sim_node: {mode: lockstep}', "'panda_sim_node' has no ros__parameters"),
 ])
 def test_other_files_are_refused_by_name(tmp_path, content, said):
@@ -26,3 +27,20 @@ def test_other_files_are_refused_by_name(tmp_path, content, said):
     with pytest.raises(ValueError, match=said) as error:
         load(path)
     assert 'mine.yaml' in str(error.value)
+
+
+def test_a_few_values_are_laid_over_the_defaults(tmp_path):
+    path = tmp_path / 'mine.yaml'
+    path.write_text('/**: {ros__parameters: {use_sim_time: false}}\n'
+                    '/panda_sim_node: {ros__parameters: {seed: 4}}\n'
+                    'mock_panda_node: {ros__parameters: {jitter: 0.0}}\n')
+    parameters, defaults = load(path), load()
+    assert parameters['panda_sim_node'] == {**defaults['panda_sim_node'], 'seed': 4, 'use_sim_time': False}
+    assert parameters['torque_ctrl_node'] == {**defaults['torque_ctrl_node'], 'use_sim_time': False}
+    assert parameters['mock_panda_node'] == {'jitter': 0.0, 'use_sim_time': False}
+
+
+def test_a_file_that_is_no_text_is_refused_by_name(tmp_path):
+    (tmp_path / 'mine.yaml').write_bytes(b'\xff\xfe\x00')
+    with pytest.raises(ValueError, match=r'mine\.yaml is not valid YAML'):
+        load(tmp_path / 'mine.yaml')

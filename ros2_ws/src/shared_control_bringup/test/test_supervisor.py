@@ -49,17 +49,33 @@ def test_a_killed_node_is_started_again_and_all_are_stopped(make_node):
     supervisor = Supervisor(nodes, 'ppo_agent_node', said.append)
     supervisor.start()
     try:
-        poll_until(supervisor, lambda: 'ready' in nodes[1].log.read_text())
         killed = nodes[1].pid
         os.kill(killed, signal.SIGKILL)
         poll_until(supervisor, lambda: nodes[1].pid != killed)
         assert said == ['torque_ctrl_node died (signal 9); starting it again']
         assert supervisor.restarts == 1
-        poll_until(supervisor, lambda: nodes[1].log.read_text().count('ready') == 2)
+        assert nodes[1].wait_ready(20.0)
     finally:
         supervisor.stop()
     assert not any(alive(node.pid) for node in nodes)
     assert [node.exit_code() for node in nodes] == [0, 0]
+
+
+def test_a_node_is_ready_when_it_says_so_and_not_before(make_node):
+    node = make_node('panda_sim_node')
+    node.log.write_text('already\n')  # of an earlier run, or any line with the word in it
+    node.start()
+    assert not node.wait_ready(0.0)
+    assert node.wait_ready(20.0)
+    assert not node.wait_ready(0.0), 'once a start'
+    node.interrupt()
+    node.wait(10.0)
+
+
+def test_nobody_waits_for_a_node_that_has_ended(make_node):
+    node = make_node('panda_sim_node', mode='sideways')
+    node.start()
+    assert not node.wait_ready(600.0)
 
 
 def test_a_wrong_parameter_ends_the_session_and_is_told(make_node):

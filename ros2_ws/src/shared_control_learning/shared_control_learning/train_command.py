@@ -2,19 +2,21 @@
 
 import argparse
 import json
-import shutil
 import sys
 from dataclasses import asdict, replace
 from pathlib import Path
 
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, load, names
+from shared_control.run_folder import RunFolder
 from shared_control.teaching.profiles import PROFILES, profile
 from tqdm import tqdm
 
 from .callbacks import Callbacks
 from .episode import Episode
+from .episode_table import TABLE_NAME
+from .policy_file import POLICY_NAME
 from .presets import preset
-from .training import RUN_NAME, TrainingError, TrainingRun, read_run, train
+from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, read_run, train
 
 
 def add_command(commands: argparse._SubParsersAction) -> None:
@@ -38,14 +40,24 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--output', type=Path, default=Path('out/train'), help='folder (default: out/train)')
     choice = parser.add_mutually_exclusive_group()
     choice.add_argument('--resume', action='store_true', help='go on with the run in the folder')
-    choice.add_argument('--overwrite', action='store_true', help='begin anew in a folder that holds a run')
+    choice.add_argument('--overwrite', action='store_true', help='begin anew in a folder that holds a run: remove '
+                        'what that run wrote, and nothing else')
     parser.add_argument('--json', type=Path, metavar='FILE', help='write the result there as well; - for the output')
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
-    _prepare(args)
+    _check_options(args)
+    folder = _claim_folder(args)
+    try:
+        return _train(args)
+    finally:
+        folder.release()
+
+
+def _train(args: argparse.Namespace) -> int:
+    """Train, and tell what came of it; the exit code."""
     chosen = preset(args.preset)
     if args.task:
         chosen = replace(chosen, task=load(TASKS, args.task)())
@@ -56,8 +68,7 @@ def run(args: argparse.Namespace) -> int:
             result = train(
                 chosen, None if tutor == 'none' else profile(tutor), args.seed, args.episodes,
                 until_skilled=args.until_skilled, human_only=args.human_only, world=args.world, folder=args.output,
-                tensorboard=True,
-                evaluate_every=args.evaluate_every, callbacks=_Bar(bar, args.output))
+                tensorboard=True, evaluate_every=args.evaluate_every, callbacks=_Bar(bar, args.output))
     except KeyboardInterrupt:
         print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)
         return 130
@@ -65,19 +76,26 @@ def run(args: argparse.Namespace) -> int:
     return 0 if result.skilled is not None or not result.tests else 1
 
 
-def _prepare(args: argparse.Namespace) -> None:
-    """Check the numbers, and that the folder is as the options say."""
+def _check_options(args: argparse.Namespace) -> None:
     if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
         raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
     if args.preset == 'autonomous' and args.tutor not in (None, 'none'):
         raise ValueError('the preset autonomous has no tutor: leave --tutor out, or choose another preset')
-    holds_run = (args.output / RUN_NAME).exists()
-    if args.resume and not holds_run:
-        raise TrainingError(f'--resume: there is no run in {args.output}')
-    if args.overwrite and holds_run:
-        shutil.rmtree(args.output)
-    elif holds_run and not args.resume:
-        raise TrainingError(f'{args.output} holds a run: --resume, --overwrite, or another --output')
+
+
+def _claim_folder(args: argparse.Namespace) -> RunFolder:
+    """The folder as the options say, for this process alone."""
+    folder = RunFolder(args.output, 'run', own=(POLICY_NAME, TABLE_NAME, TENSORBOARD_NAME, RUN_NAME),
+                       marks=(RUN_NAME,))
+    if args.resume:
+        if not folder.holds_run:
+            raise TrainingError(f'--resume: there is no run in {args.output}')
+        folder.claim()
+    else:
+        if folder.holds_run and not args.overwrite:
+            raise TrainingError(f'{args.output} holds a run: --resume, --overwrite, or another --output')
+        folder.begin(args.overwrite)
+    return folder
 
 
 class _Bar(Callbacks):

@@ -138,6 +138,7 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
     """The learner and the run in ``folder``, or those given when there are none yet."""
     folder.mkdir(parents=True, exist_ok=True)
     if not (folder / POLICY_NAME).exists():
+        _write_run(run, folder)  # from now on the folder is known as a run's, however early this one is killed
         return learner, run
     stored = read_run(folder)
     for name in ('preset', 'tutor', 'seed', 'human_only'):
@@ -150,6 +151,10 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
     stored.returns = stored.returns[:learner.episode]
     stored.intervention_rates = stored.intervention_rates[:learner.episode]
     return learner, stored
+
+
+def _write_run(run: TrainingRun, folder: Path) -> None:
+    write_atomically(folder / RUN_NAME, (json.dumps(asdict(run), indent=2) + '\n').encode())
 
 
 class _Keeper(Callbacks):
@@ -186,7 +191,7 @@ class _Keeper(Callbacks):
         run.seconds = time.monotonic() - self._started
         if self._folder is not None:
             self._table.append(episode)
-            write_atomically(self._folder / RUN_NAME, (json.dumps(asdict(run), indent=2) + '\n').encode())
+            _write_run(run, self._folder)
             save_policy(self._learner, self._folder / POLICY_NAME)
         if self._logger is not None:
             self._log(self._logger, episode, figures)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from shared_control.cli import main
+from shared_control.run_folder import RunFolder
 from shared_control.teaching.profiles import profile
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode_table import read_rows
@@ -95,6 +96,42 @@ def test_command_trains_goes_on_and_tells(tmp_path, monkeypatch, capsys):
     assert '--resume, --overwrite, or another --output' in capsys.readouterr().err
     assert command(monkeypatch, '--episodes', 2, '--evaluate-every', 0, '--output', folder, '--resume') == 0
     assert read_run(folder).episodes == 2
+
+
+def test_overwriting_removes_what_a_run_writes_and_nothing_else(tmp_path, monkeypatch, capsys):
+    short = ('--episodes', 1, '--evaluate-every', 0, '--output', tmp_path)
+    assert command(monkeypatch, *short) == 0
+    (tmp_path / 'notes.txt').write_text('mine')
+    (tmp_path / 'tensorboard' / 'old').write_text('')
+    written = (tmp_path / 'run.json').read_text()
+    assert command(monkeypatch, *short, '--overwrite', '--seed', -1) == 2
+    assert (tmp_path / 'run.json').read_text() == written, 'refused options leave the earlier run'
+    with monkeypatch.context() as patch:
+        patch.setattr('shared_control_learning.train_command.train', lambda *_, **__: pytest.fail('two writers'))
+        other = RunFolder(tmp_path, 'run', (), ())
+        other.claim()
+        for choice in ('--overwrite', '--resume'):
+            assert command(patch, *short, choice) == 2
+            assert 'in use by another run' in capsys.readouterr().err
+        other.release()
+    assert (tmp_path / 'run.json').read_text() == written
+    assert command(monkeypatch, *short, '--overwrite') == 0
+    assert (tmp_path / 'notes.txt').read_text() == 'mine'
+    assert not (tmp_path / 'tensorboard' / 'old').exists()
+
+
+def test_a_run_that_was_killed_in_its_first_episode_can_be_overwritten_and_resumed(tmp_path):
+    with pytest.raises(Killed):
+        train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0, callbacks=KillIn(1))
+    assert read_run(tmp_path).episodes == 0
+    assert train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0).episodes == 1
+
+
+def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
+    (tmp_path / 'thesis.tex').write_text('years of work')
+    assert command(monkeypatch, '--output', tmp_path, '--overwrite') == 2
+    assert 'not empty and no run' in capsys.readouterr().err
+    assert [child.name for child in tmp_path.iterdir()] == ['thesis.tex']
 
 
 @pytest.mark.parametrize(('arguments', 'message'), [

@@ -5,7 +5,8 @@ import subprocess
 import sys
 
 import pytest
-from shared_control_records.session.folder import SessionFolder, SessionFolderError
+from shared_control.run_folder import RunFolderError
+from shared_control_records.session.folder import SessionFolder
 
 
 def finished(path):
@@ -27,8 +28,9 @@ def test_a_new_folder_has_room_for_learner_and_logs(tmp_path):
 
 def test_an_earlier_session_is_kept_unless_told_otherwise(tmp_path):
     finished(tmp_path)
-    with pytest.raises(SessionFolderError, match='already holds a session'):
+    with pytest.raises(RunFolderError, match='already holds a session'):
         SessionFolder.create(tmp_path)
+    assert (tmp_path / 'report.html').read_text() == 'old'
     (tmp_path / 'notes.txt').write_text('mine')
     folder = SessionFolder.create(tmp_path, overwrite=True)
     assert not folder.report.exists()
@@ -36,16 +38,23 @@ def test_an_earlier_session_is_kept_unless_told_otherwise(tmp_path):
     assert (tmp_path / 'notes.txt').read_text() == 'mine'
 
 
+def test_a_folder_that_is_left_half_made_is_a_session(tmp_path):
+    (tmp_path / 'session').mkdir()
+    SessionFolder.create(tmp_path / 'session', settings={'preset': 'coached'}).release()
+    assert SessionFolder.open(tmp_path / 'session').holds_run
+    SessionFolder.create(tmp_path / 'session', overwrite=True)
+
+
 def test_what_is_no_session_is_never_overwritten(tmp_path):
     (tmp_path / 'thesis.tex').write_text('years of work')
-    with pytest.raises(SessionFolderError, match='no session'):
+    with pytest.raises(RunFolderError, match='no session'):
         SessionFolder.create(tmp_path, overwrite=True)
-    assert (tmp_path / 'thesis.tex').exists()
+    assert [child.name for child in tmp_path.iterdir()] == ['thesis.tex']
 
 
 def test_a_file_in_the_way(tmp_path):
     (tmp_path / 'file').write_text('')
-    with pytest.raises(SessionFolderError, match=r'cannot write the session folder .*file'):
+    with pytest.raises(RunFolderError, match=r'cannot write the session folder .*file'):
         SessionFolder.create(tmp_path / 'file' / 'session')
 
 
@@ -55,7 +64,7 @@ def test_one_session_at_a_time(tmp_path):
          'folder = SessionFolder.create(sys.argv[1]); print("held", flush=True); sys.stdin.read()', tmp_path],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert holder.stdout.readline() == b'held\n'
-    with pytest.raises(SessionFolderError, match='in use by another session'):
+    with pytest.raises(RunFolderError, match='in use by another session'):
         SessionFolder.create(tmp_path, overwrite=True)
     holder.kill()
     holder.communicate()
@@ -65,9 +74,9 @@ def test_one_session_at_a_time(tmp_path):
 def test_opening_an_earlier_session(tmp_path):
     path = finished(tmp_path).path
     SessionFolder.open(path).claim()
-    with pytest.raises(SessionFolderError, match='there is no session folder'):
+    with pytest.raises(RunFolderError, match='there is no session folder'):
         SessionFolder.open(path / 'nowhere')
-    with pytest.raises(SessionFolderError, match=r'neither settings\.json nor bag'):
+    with pytest.raises(RunFolderError, match=r'neither settings\.json nor bag'):
         SessionFolder.open(path / 'learner')
 
 
@@ -82,7 +91,7 @@ def test_files_of_a_folder(tmp_path):
     assert folder.ros_parameters('other_node') == {}
     folder.settings.write_text('{"preset": ')
     folder.parameters.write_text('- 1')
-    with pytest.raises(SessionFolderError, match=r'settings\.json'):
+    with pytest.raises(RunFolderError, match=r'settings\.json'):
         folder.read_json(folder.settings)
-    with pytest.raises(SessionFolderError, match=r'parameters\.yaml'):
+    with pytest.raises(RunFolderError, match=r'parameters\.yaml'):
         folder.ros_parameters('torque_ctrl_node')

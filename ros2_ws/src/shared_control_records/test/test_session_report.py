@@ -10,8 +10,7 @@ from mcap.writer import Writer
 from shared_control.tasks.balance import BALANCE
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import Evaluation
-from shared_control_records.session import bag_metadata as in_bag
-from shared_control_records.session import report
+from shared_control_records.session import bag_metadata, report
 from shared_control_records.session.bag_report import write_bag_report
 from shared_control_records.session.episodes import read_episodes
 from shared_control_records.session.final_test import load_test, save_test
@@ -146,13 +145,22 @@ def annotated(bag, path, content):
             for channel in summary.channels.values()}
         for _, channel, message in reader.iter_messages():
             writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
-        writer.add_metadata(in_bag.RECORD, content)
+        writer.add_metadata(bag_metadata.RECORD, content)
         writer.finish()
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_a_simulated_tutor_of_an_earlier_part_is_not_forgotten(folder):
+    folder.write_settings({'preset': 'coached', 'tutor': 'keyboard', 'earlier_tutors': ['simulated: low']})
+    summary = write_report(folder)
+    assert summary.simulated_tutor is True
+    assert summary.tutor == 'keyboard, before that simulated: low'
+    assert 'The tutor was simulated' in folder.report.read_text()
 
 
 def test_the_bag_alone_gives_the_same_report(folder, tmp_path):
     original = write_report(folder, restarts=1)
-    annotated(next(folder.bag.glob('*.mcap')), tmp_path / 'session.mcap', in_bag.pack(folder, restarts=1))
+    annotated(next(folder.bag.glob('*.mcap')), tmp_path / 'session.mcap', bag_metadata.pack(folder, restarts=1))
     shutil.rmtree(folder.path)
     page = write_bag_report(tmp_path / 'session.mcap', tmp_path / 'again')
     again = json.loads((page.parent / 'summary.json').read_text())

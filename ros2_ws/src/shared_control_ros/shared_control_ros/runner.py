@@ -13,6 +13,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from .parameters import ParameterError
 from .processes import node_environment
+from .readiness import tell_ready
 
 
 class Stop:
@@ -60,6 +61,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     try:
         runnable = make()
         runnable.node.get_logger().info('ready')
+        tell_ready()
         runnable.run(stop)
         return 0
     except (ParameterError, OSError) as error:

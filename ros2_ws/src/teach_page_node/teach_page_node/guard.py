@@ -13,7 +13,8 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-LOOPBACK = ('127.0.0.1', 'localhost', '::1')
+from .address import LOOPBACK
+
 COOKIE = 'teach_page_token'
 
 

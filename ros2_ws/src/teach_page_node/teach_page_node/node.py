@@ -1,14 +1,17 @@
 """A page to teach from: the arm, the tray and the ball in 3D, the keys, the lesson.
 
-Publishes /human/keys and shows what it hears. Open the address that it prints; one page teaches, others watch.
+Publishes /human/keys and shows what it hears. Open the address that it prints, or that the session prints which
+started it; one page teaches, others watch.
 """
 
 import asyncio
+import os
 
 from rclpy.node import Node
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 
+from .address import TOKEN_VARIABLE
 from .live import LiveDesk
 from .server import PageServer
 
@@ -23,15 +26,18 @@ class TeachPageNode:
             'and then it needs a token.')
         port = declare(node, 'port', 8088, 'Port to listen on; 0: any that is free.', minimum=0, maximum=65535)
         token = declare(node, 'token', '', 'What the address must end with when the page is open to the network; '
-                        'empty: made anew at every start.')
+                        'empty: taken from the environment, or made anew at every start.')
         frame_rate = declare(
             node, 'frame_rate', 40.0, 'Pictures that are sent.', unit='Hz', minimum=1.0, maximum=100.0)
         self._desk = LiveDesk(node)
-        self._server = PageServer(self._desk, host, port, frame_rate, token)
+        given = os.environ.get(TOKEN_VARIABLE, '')
+        self._tells_address = not given  # otherwise whoever gave it tells: a session keeps what this node says
+        self._server = PageServer(self._desk, host, port, frame_rate, given or token)
 
     def run(self, stop: Stop) -> None:
         """Serve the page until told to stop."""
-        self.node.get_logger().info(f'open {self._server.address}')
+        if self._tells_address:
+            self.node.get_logger().info(f'open {self._server.address}')
         asyncio.run(self._server.serve(lambda: stop.requested))
 
     def close(self) -> None:

@@ -2,7 +2,6 @@
 
 import asyncio
 import secrets
-import socket
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,8 +10,9 @@ from fastapi import FastAPI, WebSocket
 from fastapi.staticfiles import StaticFiles
 from nicegui import ui
 
+from .address import listen, needs_token, page_address
 from .desk import Desk
-from .guard import LOOPBACK, Guard
+from .guard import Guard
 from .layout import build
 from .room import Room
 
@@ -40,23 +40,15 @@ class PageServer:
     def __init__(self, desk: Desk, host: str, port: int, frame_rate: float, token: str = ''):
         self._desk = desk
         self._period = 1.0 / frame_rate
-        self._token = None if host in LOOPBACK else token or secrets.token_urlsafe(16)
-        family = socket.AF_INET6 if ':' in host else socket.AF_INET
-        try:
-            self._socket = socket.create_server((host, port), family=family)
-        except OSError as error:
-            raise OSError(f'cannot serve the page at {host}:{port} ({error.strerror}): name another host or port, '
-                          'port 0 for any that is free') from error
+        self._token = (token or secrets.token_urlsafe(16)) if needs_token(host) else None
+        self._socket = listen(host, port)
         self._room = Room(desk)
 
     @property
     def address(self) -> str:
         """What to open in a browser."""
         host, port = self._socket.getsockname()[:2]
-        if host in ('0.0.0.0', '::'):
-            host = socket.gethostname()
-        name = f'[{host}]' if ':' in host else host
-        return f'http://{name}:{port}/' + (f'?token={self._token}' if self._token else '')
+        return page_address(host, port, self._token)
 
     async def serve(self, stop_requested: Callable[[], bool]) -> None:
         """Serve until told to stop, by a signal or by the desk."""

@@ -1,23 +1,19 @@
 """The folder of a session: where everything is, and who may write it."""
 
-import fcntl
 import json
-import shutil
+from collections.abc import Mapping
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import yaml
+from shared_control.files import write_atomically
+from shared_control.run_folder import RunFolder, RunFolderError
 
 
-class SessionFolderError(OSError):
-    """A session's folder cannot be used; the message names it and says why."""
-
-
-class SessionFolder:
+class SessionFolder(RunFolder):
     """Paths of everything that a session keeps. Make one with :meth:`create` or :meth:`open`."""
 
     def __init__(self, path: Path):
-        self.path = path
         self.bag = path / 'bag'
         """rosbag2 folder (MCAP)."""
         self.learner = path / 'learner'
@@ -28,6 +24,8 @@ class SessionFolder:
         """The learner, to go on with or to test."""
         self.parameters = path / 'parameters.yaml'
         """ROS parameters as resolved."""
+        self.given_parameters = path / 'given_parameters.yaml'
+        """The ROS parameter file that the session was begun with, as it was then."""
         self.settings = path / 'settings.json'
         """What the options said."""
         self.logs = path / 'log'
@@ -40,93 +38,78 @@ class SessionFolder:
         """What happened, at a glance."""
         self.report = path / 'report.html'
         """The report, self-contained."""
-        self._lock_path = path / '.lock'
-        self._lock: IO[bytes] | None = None
+        own = (self.bag, self.learner, self.logs, self.given_parameters, self.parameters, self.settings, self.test,
+               self.summary, self.picture, self.report)
+        super().__init__(path, 'session', [child.name for child in own], [self.bag.name, self.settings.name])
 
     @classmethod
-    def create(cls, path: str | Path, overwrite: bool = False) -> 'SessionFolder':
+    def create(cls, path: str | Path, overwrite: bool = False,
+               settings: Mapping[str, Any] | None = None) -> 'SessionFolder':
         """A new folder, claimed for this process.
 
         Args:
             path: made when it is missing; otherwise empty, or an earlier session when ``overwrite``.
-            overwrite: remove what an earlier session left there.
+            overwrite: remove what an earlier session wrote there, and nothing else.
+            settings: what the options said. Written first: a folder that is left half-made is known as a session's.
 
         Raises:
-            SessionFolderError: it holds something else, cannot be written, or is in use.
+            RunFolderError: it holds something else, cannot be written, or is in use; it is then left as it was.
         """
         folder = cls(Path(path).expanduser().absolute())
+        folder.begin(overwrite)
         try:
-            folder.path.mkdir(parents=True, exist_ok=True)
-            folder.claim()
-            folder._make_room(overwrite)
+            if settings is not None:
+                folder.write_settings(settings)
             folder.learner.mkdir()
             folder.logs.mkdir()
-        except SessionFolderError:
-            folder.release()
-            raise
         except OSError as error:
             folder.release()
-            raise SessionFolderError(f'cannot write the session folder {folder.path}: {error.strerror}') from error
+            raise RunFolderError(f'cannot write the session folder {folder.path}: {error.strerror}') from error
         return folder
 
     @classmethod
     def open(cls, path: str | Path) -> 'SessionFolder':
-        """The folder of an earlier session. To write into it, :meth:`claim` it.
+        """The folder of an earlier session. To write into it, claim it.
 
         Raises:
-            SessionFolderError: there is none at ``path``.
+            RunFolderError: there is none at ``path``.
         """
         folder = cls(Path(path).expanduser().absolute())
         if not folder.path.is_dir():
-            raise SessionFolderError(f'there is no session folder {folder.path}')
-        if not folder._is_session():
-            raise SessionFolderError(f'{folder.path} is no session folder: it has neither settings.json nor bag/')
+            raise RunFolderError(f'there is no session folder {folder.path}')
+        if not folder.holds_run:
+            raise RunFolderError(f'{folder.path} is no session folder: it has neither settings.json nor bag/')
         return folder
 
-    def claim(self) -> None:
-        """Hold the folder until :meth:`release`, or until this process ends, however it ends.
+    def write_settings(self, settings: Mapping[str, Any]) -> None:
+        """Write ``settings.json``.
 
         Raises:
-            SessionFolderError: another session holds it, or it cannot be written.
+            OSError: it cannot be written.
         """
-        try:
-            file = self._lock_path.open('ab')
-        except OSError as error:
-            raise SessionFolderError(f'cannot write the session folder {self.path}: {error.strerror}') from error
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            file.close()
-            raise SessionFolderError(f'the session folder {self.path} is in use by another session') from error
-        self._lock = file
-
-    def release(self) -> None:
-        """Let others have the folder."""
-        if self._lock is not None:
-            self._lock.close()
-            self._lock = None
+        write_atomically(self.settings, (json.dumps(settings, indent=2) + '\n').encode())
 
     def read_json(self, path: Path) -> dict[str, Any] | None:
         """An object in one of the folder's JSON files; None when the file is missing.
 
         Raises:
-            SessionFolderError: it is no such file.
+            RunFolderError: it is no such file.
         """
         try:
             content = json.loads(path.read_text())
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
-            raise SessionFolderError(f'cannot read {path}: {error}') from error
+            raise RunFolderError(f'cannot read {path}: {error}') from error
         if not isinstance(content, dict):
-            raise SessionFolderError(f'cannot read {path}: expected a JSON object')
+            raise RunFolderError(f'cannot read {path}: expected a JSON object')
         return content
 
     def ros_parameters(self, node: str) -> dict[str, Any]:
         """A node's parameters in ``parameters.yaml``; empty when they are not there.
 
         Raises:
-            SessionFolderError: the file is no parameter file.
+            RunFolderError: the file is no parameter file.
         """
         try:
             content = yaml.safe_load(self.parameters.read_text())
@@ -134,22 +117,4 @@ class SessionFolder:
         except FileNotFoundError:
             return {}
         except (OSError, yaml.YAMLError, AttributeError, TypeError, ValueError) as error:
-            raise SessionFolderError(f'cannot read {self.parameters}: {error}') from error
-
-    def _is_session(self) -> bool:
-        return self.settings.exists() or self.bag.exists()
-
-    def _make_room(self, overwrite: bool) -> None:
-        present = [child for child in self.path.iterdir() if child != self._lock_path]
-        if not present:
-            return
-        if not self._is_session():
-            raise SessionFolderError(f'{self.path} is not empty and no session: choose another folder')
-        if not overwrite:
-            raise SessionFolderError(f'{self.path} already holds a session: choose another folder, or overwrite it')
-        for child in (self.bag, self.learner, self.logs, self.parameters, self.settings, self.test, self.summary,
-                      self.picture, self.report):
-            if child.is_dir() and not child.is_symlink():
-                shutil.rmtree(child)
-            else:
-                child.unlink(missing_ok=True)
+            raise RunFolderError(f'cannot read {self.parameters}: {error}') from error

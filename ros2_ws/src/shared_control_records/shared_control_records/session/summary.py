@@ -20,7 +20,7 @@ class Summary:
     preset: str | None
     tutor: str | None
     simulated_tutor: bool | None
-    """Whether the person at the keys was a model of one."""
+    """Whether the person at the keys was a model of one, in any part of the session."""
     duration_s: float | None
     """From the first to the last message of the bag, by the clock on the wall."""
     episodes_taught: int | None
@@ -61,12 +61,12 @@ def summarize(folder: SessionFolder, bag: Bag | None, bag_error: str | None, row
         restarts: of nodes that died; None when not known.
     """
     settings = folder.read_json(folder.settings) or {}
-    tutor = settings.get('tutor')
+    tutor = _tutors(settings)
     timing = timing_of(bag) if bag else None
     taught = [row for row in rows if row.phase == 'teach']
     return Summary(
         preset=settings.get('preset'), tutor=tutor,
-        simulated_tutor=None if tutor is None else str(tutor).startswith('simulated'),
+        simulated_tutor=None if tutor is None else 'simulated' in tutor,
         duration_s=round((bag.end_ns - bag.start_ns) * 1e-9, 3) if bag else None,
         episodes_taught=len(taught) if folder.episodes.exists() else None,
         key_presses=len(bag.presses) if bag else None,
@@ -80,6 +80,13 @@ def summarize(folder: SessionFolder, bag: Bag | None, bag_error: str | None, row
         bag_checks=_bag_checks(folder, bag) if bag else [bag_error] if bag_error else None,
         bag=str(folder.bag) if folder.bag.exists() else None,
         picture=str(folder.picture), report=str(folder.report))
+
+
+def _tutors(settings: dict[str, Any]) -> str | None:
+    """Who taught; those of earlier parts of a session that went on with another tutor come last."""
+    tutor = settings.get('tutor')
+    return None if tutor is None else ', before that '.join(
+        str(name) for name in [tutor, *reversed(settings.get('earlier_tutors', []))])
 
 
 def _bag_checks(folder: SessionFolder, bag: Bag) -> list[str]:

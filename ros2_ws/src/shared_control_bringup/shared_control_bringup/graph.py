@@ -1,0 +1,107 @@
+"""The nodes of a session: who takes part, in which order they start, and what its settings give them.
+
+``shared-control session``, the launch files and the tests of ``docker/compose.yaml`` all go by this table.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, auto
+from pathlib import Path
+from typing import Any
+
+from shared_control_records.session.folder import SessionFolder
+
+from .settings import Settings
+
+
+class Role(Enum):
+    """What a node is to its session."""
+
+    MEMBER = auto()
+    """Nothing special."""
+    CONTROL_LOOP = auto()
+    """A part of the 1 kHz loop, which has a core of its own."""
+    FOREGROUND = auto()
+    """Uses the terminal when the lesson is shown there."""
+    LEADER = auto()
+    """Its clean end is the end of the session."""
+    STOPPER = auto()
+    """Its clean end stops the session before its end."""
+
+
+@dataclass(frozen=True)
+class Session:
+    """What the parameters of nodes depend on."""
+
+    settings: Settings
+    folder: SessionFolder
+    shows_screen: bool
+    """Whether the lesson is shown in the terminal."""
+
+
+@dataclass(frozen=True)
+class SessionNode:
+    """One node of a session."""
+
+    name: str
+    """Of package, executable and node alike."""
+    parameters: Callable[[Session], dict[str, Any]]
+    """What it is given on top of the parameter file."""
+    role: Role = Role.MEMBER
+    tutor: str = ''
+    """Takes part with this tutor only; empty: with any."""
+
+
+BESIDE_A_SIMULATOR = {'enabled': True}
+"""Of the controller, where whoever starts it also starts a simulator. It is enabled nowhere else without a person."""
+ALONE: dict[str, dict[str, Any]] = {'torque_ctrl_node': {'enabled': False}}
+"""What a node is given when it is started without the others, whatever the parameter file says: the robot might be a
+real one, and a controller that died must not move it again by itself."""
+
+
+def _moment_limit(preset_name: str) -> float:
+    """The bound of the sum that the task of a preset asks for, N m."""
+    from shared_control_learning.presets import preset  # late: `--help` need not wait for pinocchio
+    return float(preset(preset_name).task.limit.max())
+
+
+NODES = (
+    SessionNode('session_recorder_node', lambda s: {'output': str(s.folder.bag)}),
+    SessionNode('torque_ctrl_node', lambda s: {
+        'moment_limit': _moment_limit(s.settings.preset), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
+    SessionNode('panda_sim_node', lambda s: {'seed': s.settings.seed}, Role.CONTROL_LOOP),
+    SessionNode('teleop_key_node', lambda s: {'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
+    SessionNode('sim_tutor_node', lambda s: {'profile': s.settings.profile, 'seed': s.settings.seed}, tutor='sim'),
+    SessionNode('teach_page_node', lambda s: {'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
+                tutor='page'),
+    SessionNode('ppo_agent_node', lambda s: {
+        'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
+        'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',
+        'output': str(s.folder.learner)}, Role.LEADER),
+)
+"""In the order in which they start: who listens is there before who speaks."""
+OTHERS = ('mock_panda_node', 'panda_bridge_node', 'robot_view_node')
+"""Nodes that no session starts."""
+ALL_NODES = (*(node.name for node in NODES), *OTHERS)
+
+
+def nodes_of(tutor: str) -> list[SessionNode]:
+    """Those that take part in a session with this tutor, in the order in which they start."""
+    return [node for node in NODES if node.tutor in ('', tutor)]
+
+
+def named(*roles: Role) -> list[str]:
+    """Names of the nodes in these roles."""
+    return [node.name for node in NODES if node.role in roles]
+
+
+def overrides(settings: Settings, folder: Path, shows_screen: bool) -> dict[str, dict[str, Any]]:
+    """What the nodes of a session are given on top of the parameter file, by name.
+
+    Args:
+        settings: of the session; the port of its page must be known.
+        folder: of the session.
+        shows_screen: whether the lesson is shown in the terminal.
+    """
+    session = Session(settings, SessionFolder(folder), shows_screen)
+    return {node.name: node.parameters(session) for node in nodes_of(settings.tutor)}

@@ -1,0 +1,47 @@
+"""The page of a session: where it is served, and the token of a page that is open to the network."""
+
+import secrets
+from dataclasses import dataclass
+from typing import Any
+
+from teach_page_node.address import TOKEN_VARIABLE, free_port, needs_token, page_address
+
+from .settings import Settings
+
+NODE = 'teach_page_node'
+
+
+@dataclass(frozen=True)
+class Page:
+    """Chosen by the session, so that it stays the same when the node is started again."""
+
+    host: str
+    port: int
+    token: str | None
+    """None: the page is for this machine only."""
+
+    @classmethod
+    def choose(cls, settings: Settings, parameters: dict[str, dict[str, Any]]) -> 'Page | None':
+        """The page of a session; None when it has none.
+
+        A token in ``parameters`` is taken out of them, since they are recorded.
+
+        Raises:
+            OSError: the host is none of this machine's.
+        """
+        token = parameters.get(NODE, {}).pop('token', '')
+        if settings.tutor != 'page':
+            return None
+        host, port = settings.page
+        return cls(host, port or free_port(host),
+                   (token or secrets.token_urlsafe(16)) if needs_token(host) else None)
+
+    @property
+    def address(self) -> str:
+        """What to open in a browser."""
+        return page_address(self.host, self.port, self.token)
+
+    @property
+    def environment(self) -> dict[str, dict[str, str]]:
+        """Variables for the node that serves it, by its name."""
+        return {NODE: {TOKEN_VARIABLE: self.token}} if self.token else {}

@@ -1,0 +1,114 @@
+"""What the options of a session say."""
+
+import math
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any
+
+from shared_control.plugins import LEARNERS, names
+from shared_control.teaching.profiles import PROFILES
+
+TUTORS = ('keyboard', 'page', 'sim', 'none')
+SIMULATED = 'simulated: '
+"""Before the profile, where settings.json names a simulated tutor."""
+FIXED = ('preset', 'seed')
+"""What a session that goes on cannot change: the learner was made with it."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is taught, by whom, and for how long. The ranges are those of the nodes' parameters.
+
+    Raises:
+        ValueError: a value is none that a session can run with; the message names the option.
+    """
+
+    preset: str = 'coached'
+    """What is learned and how."""
+    tutor: str = 'keyboard'
+    """Who teaches: one of ``TUTORS``."""
+    profile: str = 'expert'
+    """Of the simulated tutor."""
+    episodes: int = 0
+    """Teach this many; 0: until somebody says that it has learned it."""
+    minutes: float = 45.0
+    """Teach for this long at the most, min."""
+    test_episodes: int = 20
+    """Of the policy alone, at the end."""
+    seed: int = 0
+    """Of ball starts, learner and simulated tutor."""
+    page: tuple[str, int] = ('127.0.0.1', 8088)
+    """Host and port of the page; port 0: any that is free."""
+    screen: bool = True
+    """Whether to show the lesson in the terminal."""
+    earlier_tutors: tuple[str, ...] = ()
+    """Who taught the earlier parts of a session that went on with another tutor, as settings.json names them."""
+
+    def __post_init__(self) -> None:
+        for option, value, choices in (('--preset', self.preset, names(LEARNERS)), ('--tutor', self.tutor, TUTORS),
+                                       ('--profile', self.profile, PROFILES)):
+            if value not in choices:
+                raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
+        for option, number, low, high in (
+                ('--episodes', self.episodes, 0, 100_000), ('--minutes', self.minutes, 0.1, 1440.0),
+                ('--test-episodes', self.test_episodes, 0, math.inf), ('--seed', self.seed, 0, 2**31 - 1),
+                ("--page's port", self.page[1], 0, 65535)):
+            if not (low <= number <= high and math.isfinite(number)):
+                upper = f' and at most {high}' if high < math.inf else ''
+                raise ValueError(f'{option} must be at least {low}{upper}, not {number}')
+
+    @property
+    def teacher(self) -> str:
+        """The tutor as settings.json names it: a simulated one with its profile."""
+        return f'{SIMULATED}{self.profile}' if self.tutor == 'sim' else self.tutor
+
+    def with_options(self, given: dict[str, Any]) -> 'Settings':
+        """These settings with the options that were given, some of which mean nothing without another.
+
+        Raises:
+            ValueError: see the class; or an option belongs to another tutor.
+        """
+        changed = replace(self, **given)
+        for name, tutor in (('profile', 'sim'), ('page', 'page')):
+            if name in given and changed.tutor != tutor:
+                raise ValueError(f'--{name} belongs to --tutor {tutor}, and the tutor is {changed.tutor}')
+        return changed
+
+    def resumed_with(self, given: dict[str, Any]) -> 'Settings':
+        """These settings for a session that goes on, with the options that were given now.
+
+        Raises:
+            ValueError: see :meth:`with_options`; or one of ``FIXED`` was given.
+        """
+        for name in FIXED:
+            if name in given:
+                raise ValueError(f'--{name} cannot change in a session that goes on (it is {getattr(self, name)}): '
+                                 'leave it out, or begin a new session')
+        changed = self.with_options(given)
+        if changed.teacher == self.teacher:
+            return changed
+        return replace(changed, earlier_tutors=(*self.earlier_tutors, self.teacher))
+
+    def to_json(self) -> dict[str, Any]:
+        """As settings.json has it."""
+        content = asdict(self)
+        del content['profile']
+        return {**content, 'tutor': self.teacher}
+
+    @classmethod
+    def from_json(cls, content: dict[str, Any]) -> 'Settings':
+        """From settings.json; what is missing has its default.
+
+        Raises:
+            ValueError: a value cannot be used; the message names it.
+        """
+        known = {field.name for field in fields(cls)}
+        values: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value for name, value in content.items()
+            if name in known}
+        tutor = str(values.get('tutor', cls.tutor))
+        if tutor.startswith(SIMULATED):
+            values |= {'tutor': 'sim', 'profile': tutor.removeprefix(SIMULATED)}
+        try:
+            return cls(**values)
+        except (TypeError, IndexError) as error:
+            raise ValueError(f'a value has the wrong type: {error}') from error

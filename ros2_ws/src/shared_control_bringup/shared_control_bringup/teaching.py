@@ -1,0 +1,84 @@
+"""Runs the graph of a session until the teaching is over."""
+
+import signal
+import sys
+import time
+from enum import Enum
+
+from shared_control_records.session.folder import SessionFolder
+
+from . import parameters as ros_parameters
+from .graph import Role, named, nodes_of
+from .node_process import NodeProcess
+from .page import Page
+from .progress import EpisodePrinter
+from .supervisor import SessionError, StoppedByNode, Supervisor
+
+POLL_SECONDS = 0.1
+
+
+class End(Enum):
+    """How the teaching ended; the value is the exit code."""
+
+    DONE = 0
+    FAILED = 1
+    STOPPED = 130
+
+
+def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | None) -> tuple[End, int]:
+    """Run the graph until the agent is done or somebody stops it.
+
+    Args:
+        folder: of the session, with the parameters of its nodes.
+        tutor: who teaches; decides which nodes take part.
+        shows_screen: whether the lesson is shown in the terminal.
+        page: whose address is printed when it can be opened.
+
+    Returns:
+        How it ended, and how often nodes were started again.
+    """
+    paced = ros_parameters.load(folder.parameters)['panda_sim_node'].get('paced', True)
+    environment = page.environment if page else {}
+    nodes = [NodeProcess(
+        node.name, folder.parameters, folder.logs / f'{node.name}.log',
+        in_foreground=shows_screen and node.role is Role.FOREGROUND, in_control_loop=node.role is Role.CONTROL_LOOP,
+        in_real_time=paced, environment=environment.get(node.name)) for node in nodes_of(tutor)]
+    log = (folder.logs / 'session.log').open('a')
+
+    def say(text: str) -> None:
+        print(time.strftime('%H:%M:%S'), text, file=log, flush=True)
+        if not shows_screen:
+            print(text, flush=True)
+
+    (leader,), (stopper,) = named(Role.LEADER), named(Role.STOPPER)
+    supervisor = Supervisor(nodes, leader=leader, stopper=stopper, say=say)
+    episodes = EpisodePrinter(folder.episodes, say)
+    previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
+    error: SessionError | None = None
+    try:
+        supervisor.start()
+        if page:
+            print(f'\n    Teach here: {page.address}\n', flush=True)  # with the token, hence not into the log
+        while supervisor.poll():
+            episodes.poll()
+            time.sleep(POLL_SECONDS)
+        end = End.DONE
+    except (KeyboardInterrupt, StoppedByNode):
+        end = End.STOPPED
+    except SessionError as problem:
+        end, error = End.FAILED, problem
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        supervisor.stop()
+        episodes.poll()
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+        log.close()
+    if error is not None:
+        print(f'shared-control: {error}', file=sys.stderr)
+    return end, supervisor.restarts
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt

@@ -1,0 +1,172 @@
+"""What ``shared-control session`` checks, writes and removes before and beside the graph, which is left out here."""
+
+import json
+
+import pytest
+import yaml
+from shared_control.cli import main
+from shared_control_bringup import session as command
+from shared_control_bringup.parameters import DEFAULTS, load
+from shared_control_bringup.teaching import End
+from shared_control_records.session.folder import SessionFolder
+
+
+@pytest.fixture
+def session(monkeypatch):
+    """``session(*arguments)``: run the command with a graph that is done at once; its exit code."""
+    def teach(folder, tutor, shows_screen, page):
+        run.page = page
+        folder.release()
+        return End.DONE, 0
+
+    def run(*arguments):
+        monkeypatch.setattr('sys.argv', ['shared-control', 'session', *map(str, arguments)])
+        return main()
+
+    monkeypatch.setattr(command, 'teach', teach)
+    monkeypatch.setattr(command, '_report', lambda *_: None)
+    return run
+
+
+@pytest.fixture
+def few(tmp_path):
+    """A parameter file with one value."""
+    path = tmp_path / 'few.yaml'
+    path.write_text('/**/panda_sim_node:\n  ros__parameters:\n    paced: false  # faster\n')
+    return path
+
+
+def content(path):
+    return {file.relative_to(path): file.read_bytes() for file in path.rglob('*') if file.is_file()}
+
+
+def settings_of(path):
+    return json.loads((path / 'settings.json').read_text())
+
+
+REFUSED = [
+    (['--tutor', 'keyboard'], 'there is no terminal'),
+    (['--episodes', -1], '--episodes must be at least 0'),
+    (['--minutes', 'nan'], '--minutes must be'),
+    (['--minutes', 0], '--minutes must be'),
+    (['--test-episodes', -2], '--test-episodes must be at least 0'),
+    (['--seed', 2**31], '--seed must be'),
+    (['--page', '127.0.0.1:0'], '--page belongs to --tutor page'),
+    (['--tutor', 'page', '--page', 'no.such.host.invalid:0'], 'cannot serve the page at no.such.host.invalid'),
+    (['--params-file', 'nowhere.yaml'], 'nowhere.yaml'),
+    (['--params-file', 'wrong.yaml'], "wrong.yaml: there is no node '/**/panda_sim'"),
+]
+
+
+@pytest.mark.parametrize(('arguments', 'said'), REFUSED)
+def test_a_refused_start_leaves_everything_as_it_was(session, tmp_path, monkeypatch, capsys, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'wrong.yaml').write_text('/**/panda_sim:\n  ros__parameters:\n    seed: 1\n')
+    old = tmp_path / 'old'
+    assert session('--tutor', 'sim', '--output', old) == 0
+    (old / 'learner' / 'policy.safetensors').write_bytes(b'hours of work')
+    before = content(old)
+    for folder in (old, tmp_path / 'new'):
+        assert session('--tutor', 'sim', '--output', folder, '--overwrite', *arguments) == 2
+        assert said in capsys.readouterr().err
+    assert content(old) == before
+    assert not (tmp_path / 'new').exists(), 'a half-made folder would block the next try'
+
+
+def test_overwriting_removes_what_a_session_writes_and_nothing_else(session, tmp_path, capsys):
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'sim', '--output', folder) == 0
+    (folder / 'learner' / 'policy.safetensors').write_bytes(b'old')
+    (folder / 'notes.txt').write_text('mine')
+    assert session('--tutor', 'none', '--output', folder) == 2
+    assert 'already holds a session' in capsys.readouterr().err
+    assert session('--tutor', 'none', '--output', folder, '--overwrite') == 0
+    assert settings_of(folder)['tutor'] == 'none'
+    assert not (folder / 'learner' / 'policy.safetensors').exists()
+    assert (folder / 'notes.txt').read_text() == 'mine'
+
+
+def test_two_sessions_in_one_folder_are_refused(session, tmp_path, capsys):
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'sim', '--output', folder) == 0
+    other = SessionFolder.open(folder)
+    other.claim()
+    before = content(folder)
+    for arguments in (['--tutor', 'sim', '--output', folder, '--overwrite'], ['--resume', folder, '--episodes', 2]):
+        assert session(*arguments) == 2
+        assert 'in use by another session' in capsys.readouterr().err
+    assert content(folder) == before
+
+
+def test_a_file_with_a_few_values_is_laid_over_the_defaults(session, few, tmp_path):
+    folder = SessionFolder(tmp_path / 'session')
+    assert session('--tutor', 'sim', '--output', folder.path, '--params-file', few, '--seed', 3) == 0
+    assert folder.given_parameters.read_text() == few.read_text()
+    assert folder.ros_parameters('panda_sim_node') == {**load()['panda_sim_node'], 'paced': False, 'seed': 3}
+    assert folder.ros_parameters('torque_ctrl_node')['enabled'] is True, 'beside a simulator'
+    assert folder.ros_parameters('ppo_agent_node')['test_episodes'] == load()['ppo_agent_node']['test_episodes']
+
+
+def test_a_session_goes_on_with_its_parameters_and_the_options_given_now(session, few, tmp_path, monkeypatch):
+    folder = SessionFolder(tmp_path / 'session')
+    assert session('--tutor', 'sim', '--output', folder.path, '--params-file', few, '--episodes', 5) == 0
+    few.unlink()
+    monkeypatch.chdir(tmp_path.parent)
+    assert session('--resume', folder.path) == 0
+    assert folder.ros_parameters('panda_sim_node')['paced'] is False
+    assert folder.ros_parameters('ppo_agent_node')['episodes'] == 5
+    assert session('--resume', folder.path, '--episodes', 9, '--minutes', 3, '--profile', 'low', '--no-screen') == 0
+    assert folder.ros_parameters('ppo_agent_node')['episodes'] == 9
+    assert folder.ros_parameters('sim_tutor_node')['profile'] == 'low'
+    assert session('--resume', folder.path) == 0
+    kept = settings_of(folder.path)
+    assert (kept['episodes'], kept['minutes'], kept['tutor'], kept['screen']) == (9, 3.0, 'simulated: low', False)
+    assert kept['earlier_tutors'] == ['simulated: expert']
+    assert folder.ros_parameters('ppo_agent_node')['max_minutes'] == 3.0
+
+
+@pytest.mark.parametrize('arguments', [
+    ['--preset', 'thesis'], ['--seed', 1], ['--output', 'elsewhere'], ['--overwrite'], ['--params-file', DEFAULTS],
+    ['--episodes', -1], ['--tutor', 'keyboard']])
+def test_what_cannot_change_when_a_session_goes_on_is_refused(session, tmp_path, capsys, arguments):
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'sim', '--output', folder) == 0
+    before = content(folder)
+    assert session('--resume', folder, *arguments) == 2
+    assert (arguments[0] if arguments[0] != '--tutor' else 'no terminal') in capsys.readouterr().err
+    assert content(folder) == before
+
+
+@pytest.mark.parametrize(('name', 'text', 'said'), [
+    ('settings.json', None, 'settings.json is missing'),
+    ('settings.json', '{"episodes": "many"}', 'settings.json: a value has the wrong type'),
+    ('given_parameters.yaml', None, 'given_parameters.yaml')])
+def test_a_session_whose_files_are_damaged_does_not_go_on(session, tmp_path, capsys, name, text, said):
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'sim', '--output', folder) == 0
+    (folder / 'bag').mkdir()
+    if text is None:
+        (folder / name).unlink()
+    else:
+        (folder / name).write_text(text)
+    before = content(folder)
+    assert session('--resume', folder) == 2
+    assert said in capsys.readouterr().err
+    assert content(folder) == before
+
+
+def test_the_session_chooses_the_port_of_its_page_and_keeps_the_token_to_itself(session, tmp_path):
+    folder = SessionFolder(tmp_path / 'session')
+    assert session('--tutor', 'page', '--page', '127.0.0.1:0', '--output', folder.path) == 0
+    port = folder.ros_parameters('teach_page_node')['port']
+    assert port > 0 and settings_of(folder.path)['page'] == ['127.0.0.1', 0]
+    assert session.page.address == f'http://127.0.0.1:{port}/' and session.page.environment == {}
+
+    mine = tmp_path / 'mine.yaml'
+    mine.write_text(yaml.safe_dump({'teach_page_node': {'ros__parameters': {'token': 'secret'}}}))
+    for options in ([], ['--params-file', mine]):
+        assert session('--tutor', 'page', '--page', '0.0.0.0:0', '--output', folder.path, '--overwrite', *options) == 0
+        token = session.page.environment['teach_page_node']['SHARED_CONTROL_PAGE_TOKEN']
+        assert session.page.address.endswith(f'/?token={token}')
+        assert token not in folder.parameters.read_text() and token not in folder.settings.read_text()
+    assert token == 'secret'
