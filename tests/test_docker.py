@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import yaml
 from shared_control_bringup.graph import Role, nodes_of, overrides
-from shared_control_bringup.node_process import LOOP_PRIORITY
+from shared_control_bringup.node_process import REAL_TIME_PRIORITY
 from shared_control_bringup.parameters import load
 from shared_control_bringup.settings import Settings
 
@@ -111,7 +111,7 @@ def test_the_services_are_a_session_with_a_simulated_tutor():
     expected = overrides(Settings(tutor='sim', episodes=6), Path('out/docker'), shows_screen=False)
     for node in nodes:
         words = taking_part[node.name]
-        assert (words[:3] == ['chrt', '--fifo', str(LOOP_PRIORITY)]) is (node.role is Role.CONTROL_LOOP)
+        assert (words[:3] == ['chrt', '--rr', str(REAL_TIME_PRIORITY)]) is (node.role is Role.CONTROL_LOOP)
         given = dict(word.split(':=', 1) for flag, word in pairwise(words) if flag == '-p')
         found = {**declared_defaults(node.name), **load()[node.name],
                  **{name: yaml.safe_load(value) if name != 'screen' else value for name, value in given.items()}}

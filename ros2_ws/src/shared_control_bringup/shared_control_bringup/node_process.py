@@ -12,8 +12,9 @@ from pathlib import Path
 from shared_control_ros.processes import leave_with_the_parent, node_environment
 from shared_control_ros.readiness import READY_FD
 
-LOOP_PRIORITY = 50
-"""Real-time priority of the control loop (SCHED_FIFO), where `ulimit -r` allows it; that of ros2_control."""
+REAL_TIME_PRIORITY = 49
+"""Of the threads of a node in the control loop (SCHED_RR), where `ulimit -r` allows it. The loop's own thread goes one
+above them (:mod:`shared_control_ros.real_time`): to 50, the priority of ros2_control."""
 NICENESS = 10
 """Of the nodes outside the control loop, on a machine with one core."""
 UNUSABLE = 2
@@ -80,7 +81,7 @@ class NodeProcess:
             os.sched_setaffinity(0, {last})
             if others and self._in_real_time:
                 with suppress(PermissionError):
-                    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(LOOP_PRIORITY))
+                    os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(REAL_TIME_PRIORITY))
         elif others:
             os.sched_setaffinity(0, others)
         else:

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from shared_control_bringup import parameters
@@ -17,12 +18,13 @@ def make_node(domain_id, tmp_path):
     file = tmp_path / 'parameters.yaml'
     parameters.save(parameters.load(), file)
 
-    def make(name, **changes):
+    def make(name, *, in_control_loop=False, in_real_time=False, **changes):
         if changes:
             content = parameters.load()
             content[name].update(changes)
             parameters.save(content, file)
-        return NodeProcess(name, file, tmp_path / f'{name}.log')
+        return NodeProcess(name, file, tmp_path / f'{name}.log', in_control_loop=in_control_loop,
+                           in_real_time=in_real_time)
 
     return make
 
@@ -122,3 +124,23 @@ time.sleep(60)
     while alive(pid):
         assert time.monotonic() < deadline
         time.sleep(0.05)
+
+
+def test_in_real_time_the_loop_runs_before_the_threads_of_the_middleware(make_node):
+    """At one priority on one core, a thread of Fast DDS that spins on a lock can keep its holder from running."""
+    try:
+        os.sched_setscheduler(os.getpid(), os.SCHED_RR, os.sched_param(1))
+    except PermissionError:
+        pytest.skip('real-time priority needs root, or `ulimit -r`')
+    os.sched_setscheduler(os.getpid(), os.SCHED_OTHER, os.sched_param(0))
+    node = make_node('torque_ctrl_node', in_control_loop=True, in_real_time=True)
+    node.start()
+    try:
+        assert node.wait_ready(20.0)
+        threads = [int(path.name) for path in Path(f'/proc/{node.pid}/task').iterdir()]
+        priority = {thread: os.sched_getparam(thread).sched_priority for thread in threads}
+        assert os.sched_getscheduler(node.pid) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO
+        assert len(threads) > 3 and max(p for thread, p in priority.items() if thread != node.pid) < priority[node.pid]
+    finally:
+        node.interrupt()
+        node.wait(10.0)

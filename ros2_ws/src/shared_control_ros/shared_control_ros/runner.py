@@ -14,6 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 from .parameters import ParameterError
 from .processes import node_environment
 from .readiness import tell_ready
+from .real_time import put_loop_above_other_threads
 
 
 class Stop:
@@ -60,6 +61,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     runnable: Runnable | None = None
     try:
         runnable = make()
+        put_loop_above_other_threads()
         runnable.node.get_logger().info('ready')
         tell_ready()
         runnable.run(stop)

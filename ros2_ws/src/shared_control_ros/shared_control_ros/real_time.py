@@ -1,0 +1,18 @@
+"""Real-time priority of a node's own loop."""
+
+import os
+from contextlib import suppress
+
+
+def put_loop_above_other_threads() -> None:
+    """In a process that was started with SCHED_RR, put the calling thread one above the others, with SCHED_FIFO.
+
+    Call it when the threads of the middleware are there. Fast DDS has a thread that spins on a lock; at the loop's own
+    priority, on the loop's own core, it kept the thread that held that lock from ever running again, and the session
+    stood still for good. Threads that the loop starts from now on have no real-time priority.
+    """
+    if os.sched_getscheduler(0) != os.SCHED_RR:
+        return
+    above = os.sched_param(os.sched_getparam(0).sched_priority + 1)
+    with suppress(PermissionError):  # `ulimit -r` allows just what the process was given
+        os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, above)
