@@ -5,8 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from rclpy.qos import DurabilityPolicy
-from shared_control_ros.contract import JOINT_STATES_THROTTLE, TOPICS
+from shared_control.contract_tables import services, topics
 from shared_control_ros.processes import node_environment
 
 ROOT = Path(__file__).parents[1]
@@ -18,15 +17,10 @@ def name_of(page):
     return str(page.relative_to(ROOT))
 
 
-def test_the_contract_page_has_the_topics_of_the_code():
+@pytest.mark.parametrize('table', [topics, services])
+def test_the_contract_page_has_the_tables_of_the_code(table):
     page = (ROOT / 'docs' / 'contract.md').read_text()
-    rows = re.findall(r'^\| `(/\S+)` \| (\w+/\w+) \|.*?\|.*?\| (latched, )?(\d+) \|', page, re.MULTILINE)
-    said = {name: (kind, bool(latched), int(depth)) for name, kind, latched, depth in rows}
-    assert said == {
-        '/' + topic.name.removeprefix('/'): (
-            f'{topic.msg_type.__module__.split(".")[0]}/{topic.msg_type.__name__}',
-            topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL, topic.qos.depth)
-        for topic in (*TOPICS, JOINT_STATES_THROTTLE)}
+    assert f'\n{table()}\n' in page, f'python -m shared_control.contract_tables {table.__name__}'
 
 
 @pytest.mark.parametrize('page', PAGES, ids=name_of)

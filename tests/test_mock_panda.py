@@ -42,9 +42,9 @@ class Robot:
         self.states = observer.listen(contract.JOINT_STATES, depth=10_000)
         self.balls = observer.listen(contract.BALL)
         self.reports = observer.listen(contract.DIAGNOSTICS)
-        # The robot has the simulator's name, which stands in the contract's services.
+        # Whatever it is called: services are named after the role.
         self._nodes = [start_node('torque_ctrl_node', **controller),
-                       start_node(package, name='panda_sim_node', **parameters)]
+                       start_node(package, name='some_robot', **parameters)]
         self._background = Background(observer.node)
         self.env = SharedControlEnv(GraphPlant(observer.node, self._background, observer.take_all))
         self.env.plant.wait_until_up()
@@ -62,7 +62,7 @@ class Robot:
                     assert not fallen
             except PlantInterrupted:  # the machine was busy for a second: the agent begins anew, too
                 continue
-            return [s.position_error for s in states], [s.ball_velocity for s in states]
+            return [s.position_error for s in states], [s.velocity for s in states]
 
     def spin(self, until, what=''):
         self.observer.spin(until, 60.0, what)
@@ -80,7 +80,7 @@ class Robot:
 
     def said(self, key):
         """The values that the robot's diagnostics gave for ``key``."""
-        return [v.value for r in self.reports if r.status[0].name == '/panda_sim_node'
+        return [v.value for r in self.reports if r.status[0].name == '/some_robot'
                 for v in r.status[0].values if v.key == key]
 
     def close(self):
@@ -164,9 +164,9 @@ class TestOnlyARobot:
             return mock.said('mode')[-1] == 'reflex'
 
         mock.spin(stopped, 'a reflex stop')
-        report = next(r.status[0] for r in reversed(mock.reports) if r.status[0].name == '/panda_sim_node')
+        report = next(r.status[0] for r in reversed(mock.reports) if r.status[0].name == '/some_robot')
         assert report.level == DiagnosticStatus.ERROR
-        assert 'violation: ' in report.message and '/panda_sim_node/error_recovery' in report.message
+        assert 'violation: ' in report.message and '/robot/error_recovery' in report.message
         mock.observer.node.destroy_publisher(publisher)
 
         count = len(mock.states)
@@ -174,8 +174,8 @@ class TestOnlyARobot:
         assert np.abs(mock.states[-1].velocity).max() < 1e-3 and mock.said('mode')[-1] == 'reflex'
         assert not any(mock.states[-1].effort)
 
-        assert mock.call(Trigger, 'panda_sim_node/error_recovery', Trigger.Request()).success
-        assert not mock.call(Trigger, 'panda_sim_node/error_recovery', Trigger.Request()).success
+        assert mock.call(Trigger, contract.ERROR_RECOVERY_SERVICE, Trigger.Request()).success
+        assert not mock.call(Trigger, contract.ERROR_RECOVERY_SERVICE, Trigger.Request()).success
         mock.spin(lambda: mock.said('mode')[-1] == 'move', 'control goes on')
         error, _ = mock.balance(50)
         assert max(np.abs(error)) < 0.17, 'it rolls inwards'

@@ -7,7 +7,8 @@ from shared_control.env import SharedControlEnv
 from shared_control.rates import TICKS_PER_ACTION
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
-from shared_control_ros.stamps import to_ns
+from shared_control_ros.stamps import set_ns, to_ns
+from shared_control_ros.wrenches import base_wrench, set_moment
 from shared_control_sim.local_plant import LocalPlant
 
 SEED = 11
@@ -15,16 +16,36 @@ STEPS = 750
 
 
 def actions():
-    """Smooth and abrupt ones, around the moment that keeps the tray level, so that the ball stays on it."""
-    random = np.random.default_rng(SEED)
-    steps = np.arange(STEPS)
-    return -0.26 + 0.15 * np.sin(steps / 9) + 0.3 * random.choice([-1, 0, 1], STEPS)
+    """Smooth ones, around the moment that keeps the tray level, so that the ball stays on it."""
+    return -0.26 + 0.15 * np.sin(np.arange(STEPS) / 9)
+
+
+def moments():
+    """Those of the person: abrupt ones, N m."""
+    return 2.4 * np.random.default_rng(SEED).choice([-1.0, 0.0, 1.0], (STEPS, 1))
+
+
+class Script:
+    """A person who gives a moment, (1,), N m, at every policy tick."""
+
+    held = np.zeros(1)
+
+    def reset(self, seed):
+        pass
+
+    def moment(self, state):
+        return self.held
 
 
 @pytest.fixture
-def local():
+def person():
+    return Script()
+
+
+@pytest.fixture
+def local(person):
     """The in-process environment, and a list of (q, qd, effort) that grows with every tick."""
-    plant, ticks = LocalPlant(), []
+    plant, ticks = LocalPlant(person=person), []
     step = plant.world.step
 
     def recorded_step(torque):
@@ -39,13 +60,22 @@ def local():
 
 
 @pytest.fixture
-def graph(start_node, observer):
+def graph(start_node, observer, person):
     """The same on the unpaced graph."""
     states = observer.listen(contract.JOINT_STATES)
     start_node('panda_sim_node', paced=False)
-    start_node('torque_ctrl_node', enabled=True, wait_for=['agent'])
+    start_node('torque_ctrl_node', enabled=True, wait_for=['human', 'agent'])
     background = Background(observer.node)
-    plant = GraphPlant(observer.node, background, observer.take_all)
+    publisher, wrench = observer.publisher(contract.HUMAN_WRENCH), base_wrench()
+
+    def attend():
+        """The person answers every observation, as the agent does."""
+        observer.take_all()
+        set_ns(wrench.header.stamp, plant._stamp_ns)
+        set_moment(wrench, person.held)
+        publisher.publish(wrench)
+
+    plant = GraphPlant(observer.node, background, attend)
     plant.wait_until_up()
     env = SharedControlEnv(plant)
     yield env, states
@@ -53,7 +83,7 @@ def graph(start_node, observer):
     background.close()
 
 
-def test_an_episode_on_the_graph_equals_one_in_process(local, graph, observer):
+def test_an_episode_on_the_graph_equals_one_in_process(local, graph, observer, person):
     (local_env, local_ticks), (graph_env, states) = local, graph
     for episode_seed, steps in ((SEED, STEPS), (SEED + 1, 50)):  # a second one: nothing of the first remains
         local_ticks.clear()
@@ -61,11 +91,11 @@ def test_an_episode_on_the_graph_equals_one_in_process(local, graph, observer):
         for env, rows in ((local_env, local_rows), (graph_env, graph_rows)):
             rows.append(env.reset(seed=episode_seed)[0])
         first_stamp = graph_env.plant._stamp_ns
-        for action in actions()[:steps]:
+        for action, person.held in list(zip(actions(), moments(), strict=True))[:steps]:
             for env, rows in ((local_env, local_rows), (graph_env, graph_rows)):
                 observation, reward, terminated, truncated, info = env.step(np.array([action], np.float32))
-                rows.append([*observation, reward, terminated, truncated, info['applied'][0],
-                             *info['reward_terms'].values()])
+                rows.append([*observation, reward, terminated, truncated, *info['human'], *info['agent'],
+                             *info['applied'], *info['reward_terms'].values()])
             if terminated:
                 break
         assert not terminated, 'the test wants a whole episode'

@@ -50,9 +50,9 @@ class TestInANamespace:
         assert '/robot1/joint_states' in topics and '/joint_states' not in topics and '/robot1/ball' not in topics
 
     def test_services_move_along(self, graph):
-        assert graph.call(SetBool, '/robot1/panda_sim_node/pause', SetBool.Request(data=True)).message == 'paused'
-        assert graph.call(SetBool, '/robot1/panda_sim_node/pause', SetBool.Request(data=False)).success
-        assert graph.call(Trigger, '/robot1/panda_sim_node/reset', Trigger.Request()).success
+        assert graph.call(SetBool, '/robot1/simulator/pause', SetBool.Request(data=True)).message == 'paused'
+        assert graph.call(SetBool, '/robot1/simulator/pause', SetBool.Request(data=False)).success
+        assert graph.call(Trigger, '/robot1/simulator/reset', Trigger.Request()).success
 
     @pytest.mark.parametrize(('node', 'name', 'value'), [
         ('panda_sim_node', 'seed', 41),  # file

@@ -7,10 +7,10 @@ from collections import defaultdict
 import numpy as np
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
+from shared_control import contract
 from shared_control_learning.episode_table import read_rows
 from shared_control_learning.policy_file import read_description
 from shared_control_records.session.bag_report import write_bag_report
-from shared_control_ros import contract
 
 
 def check_bag_with_rosbags(bag):
@@ -18,10 +18,7 @@ def check_bag_with_rosbags(bag):
     stamps = []
     with AnyReader([bag]) as reader:
         types = {connection.topic: connection.msgtype for connection in reader.connections}
-        for topic in contract.TOPICS:
-            name = '/' + topic.name.lstrip('/')
-            package, kind = types[name].split('/msg/')
-            assert topic.msg_type.__module__.startswith(package) and topic.msg_type.__name__ == kind
+        assert types == {topic.full_name: topic.type for topic in contract.BAG_TOPICS}
         wanted = [c for c in reader.connections if c.topic == '/joint_states']
         for connection, _, raw in reader.messages(wanted):
             stamp = reader.deserialize(raw, connection.msgtype).header.stamp

@@ -5,11 +5,13 @@ from pathlib import Path
 
 import pytest
 import shared_control_ros
+from shared_control.contract import SERVICES, TOPICS
 from shared_control_ros.sros2_policy import ENCLAVES, policy
 
 COMMITTED = Path(shared_control_ros.__file__).parent / 'config' / 'sros2_policy.xml'
 SOURCES = Path(__file__).parents[1] / 'ros2_ws' / 'src'
 STAND_IN = SOURCES / 'panda_bridge_node' / 'test' / 'stand_in'
+TYPES = {'/' + entry.name.removeprefix('/'): entry.type for entry in (*TOPICS, *SERVICES)}
 NODES = {path.name: {} for path in SOURCES.glob('*_node')}
 
 
@@ -37,10 +39,11 @@ def test_the_committed_policy_is_up_to_date():
 
 def test_what_moves_the_robot_may_come_from_one_node_only(allowed):
     for topic, only in (('/effort_controller/commands', 'torque_ctrl_node'), ('/target_wrench', 'torque_ctrl_node'),
+                        ('/human/applied_wrench', 'torque_ctrl_node'), ('/agent/applied_wrench', 'torque_ctrl_node'),
                         ('/human/target_wrench', 'teleop_key_node'), ('/agent/target_wrench', 'ppo_agent_node'),
                         ('/emergency_stop', 'operator')):
         assert [node for node, rules in allowed.items() if topic in rules['publish']] == [only]
-    assert [node for node, rules in allowed.items() if '/torque_ctrl_node/enable' in rules.get('request', ())] == [
+    assert [node for node, rules in allowed.items() if '/controller/enable' in rules.get('request', ())] == [
         'operator']
 
 
@@ -65,3 +68,5 @@ def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_p
             done = {entry[0] for entry in found(name, '/')}
             assert done <= rules.get(what, set()), f'{name} does what the policy does not allow it to {what}'
             assert done or what not in ('publish', 'reply'), f'{name} was not looked at'
+            for entry, types in found(name, '/'):
+                assert types == [TYPES.get(entry, types[0])], f'{name}: {entry} is not of the type of the contract'

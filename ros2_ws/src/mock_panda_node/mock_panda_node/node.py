@@ -1,8 +1,9 @@
 """Mock of an effort-controlled Panda with tray and ball: the topics of a real robot and its behaviour, simulated.
 
 Its clock runs freely (wall time, no /clock), its ticks jitter, it loses commands, carries its own weight, stops by
-itself when a limit is violated, and recovers when asked to. Services: ~/error_recovery (Trigger), ~/reset (Trigger),
-~/pause (SetBool, refused: a robot's time does not stand still).
+itself when a limit is violated, and recovers when asked to. Services: robot/error_recovery (Trigger), simulator/reset
+(Trigger), simulator/set_parameters (SetParameters: seed), simulator/pause (SetBool, refused: a robot's time does not
+stand still).
 """
 
 import gc
@@ -14,6 +15,7 @@ from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts
+from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -64,9 +66,9 @@ class MockPandaNode:
         self._states = StatePublisher(node, world, with_clock=self._has_clock)
         self._commands = TorqueInput(node)
         self._pushes = PushInput(node, world, round(timeout / CONTROL_PERIOD))
-        node.create_service(Trigger, '~/error_recovery', self._on_error_recovery)
-        node.create_service(Trigger, '~/reset', self._on_reset)
-        node.create_service(SetBool, '~/pause', self._on_pause)
+        node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
+        node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
+        node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, self._period)
 
@@ -149,7 +151,8 @@ class MockPandaNode:
         self._report()
 
     def _fault(self) -> str:
-        return f'reflex stop: {self._robot.fault}; to go on: {self.node.get_fully_qualified_name()}/error_recovery'
+        recovery = self.node.resolve_service_name(contract.ERROR_RECOVERY_SERVICE)
+        return f'reflex stop: {self._robot.fault}; to go on: {recovery}'
 
     def _report(self) -> None:
         mode = self._robot.mode

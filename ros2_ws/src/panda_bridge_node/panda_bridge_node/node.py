@@ -1,7 +1,8 @@
 """Bridge to a real Panda: wires panda-python's torque interface to /joint_states and /effort_controller/commands.
 
-It refuses to move until a person calls ~/enable (SetBool), and ends the control when torques are silent, when the arm
-reports an error and when it leaves. ~/error_recovery (Trigger) leaves a reflex. A skeleton: see docs/real_panda.md.
+It refuses to move until a person calls robot/enable (SetBool), and ends the control when torques are silent, when the
+arm reports an error and when it leaves. robot/error_recovery (Trigger) leaves a reflex. A skeleton: see
+docs/real_panda.md.
 """
 
 import time
@@ -12,6 +13,7 @@ from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.limits import DOF
 from shared_control.robot.reflex import command_violation
+from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.joint_state_publisher import JointStatePublisher
@@ -49,8 +51,9 @@ class PandaBridgeNode:
         self._command_time = 0.0
         self._joints = JointStatePublisher(node)
         self._commands = TorqueInput(node)
-        node.create_service(SetBool, '~/enable', self._on_enable)
-        node.create_service(Trigger, '~/error_recovery', self._on_error_recovery)
+        node.create_service(SetBool, contract.ROBOT_ENABLE_SERVICE, self._on_enable)
+        node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
+        self._enable_name = node.resolve_service_name(contract.ROBOT_ENABLE_SERVICE)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
         self._ticks = 0
@@ -98,7 +101,8 @@ class PandaBridgeNode:
         """End the control when there is reason to."""
         if fault := self._arm.failure():
             self._disable()
-            self._fault = f'{fault}; to go on: {self.node.get_fully_qualified_name()}/error_recovery, then ~/enable'
+            recovery = self.node.resolve_service_name(contract.ERROR_RECOVERY_SERVICE)
+            self._fault = f'{fault}; to go on: {recovery}, then {self._enable_name}'
             self.node.get_logger().error(self._fault)
             self._report()
         elif self._silence() > self._timeout:
@@ -121,7 +125,7 @@ class PandaBridgeNode:
         if self._state.mode != IDLE:
             return f'the arm is in mode {self._state.mode}, not {IDLE}'
         if self._command is None or self._silence() > self._timeout:
-            return f'no torques on {self._commands.topic_name}: enable torque_ctrl_node first'
+            return f'no torques on {self._commands.topic_name}: enable the controller first'
         return command_violation(self._command, np.zeros(DOF), CONTROL_PERIOD)
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
@@ -161,7 +165,7 @@ class PandaBridgeNode:
         if self._fault:
             problems['robot'] = self._fault
         elif not self._enabled:
-            problems[self._commands.topic_name] = f'disabled: {self.node.get_fully_qualified_name()}/enable to go on'
+            problems[self._commands.topic_name] = f'disabled: {self._enable_name} to go on'
         drift = (time.time_ns() - self._stamp_ns()) * 1e-9
         if abs(drift) > CLOCK_DRIFT:
             self.node.get_logger().warning(f"stamps set anew: the arm's clock was {drift:.3f} s off this machine's")

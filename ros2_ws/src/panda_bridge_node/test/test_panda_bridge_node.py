@@ -77,7 +77,7 @@ class TestWiring:
     """The bridge on the stand-in."""
 
     def enable(self, observer, data=True, beside=lambda: None):
-        return observer.call(SetBool, 'panda_bridge_node/enable', SetBool.Request(data=data), beside=beside)
+        return observer.call(SetBool, 'robot/enable', SetBool.Request(data=data), beside=beside)
 
     def enable_beside(self, observer, commands, torque):
         """Enable while torques come."""
@@ -98,7 +98,7 @@ class TestWiring:
 
     def test_nothing_moves_before_a_person_enables_it(self, observer, states, commands):
         refused = self.enable(observer)
-        assert not refused.success and 'enable torque_ctrl_node first' in refused.message
+        assert not refused.success and 'enable the controller first' in refused.message
         count = len(states)
         self.send(observer, commands, [0.0] * 6 + [0.5], lambda: len(states) > count + 100)
         assert not any(states[-1].effort)
@@ -115,6 +115,6 @@ class TestWiring:
                   lambda: any('aborted by reflex' in r.status[0].message for r in reports))
         refused = self.enable(observer)
         assert not refused.success and 'kReflex' in refused.message
-        assert observer.call(Trigger, 'panda_bridge_node/error_recovery', Trigger.Request()).success
+        assert observer.call(Trigger, 'robot/error_recovery', Trigger.Request()).success
         self.enable_beside(observer, commands, [0.0] * 7)
         assert self.enable(observer, False).success

@@ -1,7 +1,8 @@
 """PyBullet simulator of a Panda with a tray and a ball: a robot on topics.
 
 Publishes /joint_states (1 kHz), /ball and /clock (100 Hz), takes joint torques on /effort_controller/commands and
-pushes at the tray on /disturbance. Services: ~/reset (Trigger), ~/pause (SetBool).
+pushes at the tray on /disturbance. Services: simulator/reset (Trigger), simulator/pause (SetBool),
+simulator/set_parameters (SetParameters: seed).
 """
 
 import gc
@@ -14,6 +15,7 @@ from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.scene import Ball
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts
+from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -64,8 +66,8 @@ class PandaSimNode:
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)
         self._commands = TorqueInput(node)
         self._pushes = PushInput(node, self._world, self._timeout_ticks)
-        node.create_service(Trigger, '~/reset', self._on_reset)
-        node.create_service(SetBool, '~/pause', self._on_pause)
+        node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
+        node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
 
@@ -144,7 +146,7 @@ class PandaSimNode:
         """Without a controller the node answers, but time does not go on."""
         self.node.get_logger().warning(
             f'no torque on {self._commands.topic_name} for {waited:.1f} s: the simulation stands still until '
-            'torque_ctrl_node answers', throttle_duration_sec=5.0)
+            'the controller answers', throttle_duration_sec=5.0)
         if self._tick % TICKS_PER_ACTION == 0:
             self._between_actions()
         if self._diagnostics.due():

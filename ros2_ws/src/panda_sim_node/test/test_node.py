@@ -23,6 +23,12 @@ def pause(observer, paused):
     assert observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=paused)).success
 
 
+def set_parameters(observer, *parameters):
+    """Results of the simulator's own service."""
+    request = SetParameters.Request(parameters=[parameter.to_parameter_msg() for parameter in parameters])
+    return observer.call(SetParameters, contract.SEED_SERVICE, request).results
+
+
 @pytest.fixture(scope='class')
 def states(start_node, observer):
     states = observer.listen(contract.JOINT_STATES, depth=10_000)
@@ -52,10 +58,8 @@ class TestLockstepWithController:
         observer.spin_for(0.3)
         assert len(states) == count
         assert (stamps_ms(states)[-1] + 1) % 20 == 0
-        request = Parameter('seed', value=7).to_parameter_msg()
-        result = observer.call(
-            SetParameters, '/panda_sim_node/set_parameters', SetParameters.Request(parameters=[request]))
-        assert result.results[0].successful
+        seeded, = set_parameters(observer, Parameter('seed', value=7))
+        assert seeded.successful
         assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success
         balls.clear()
         pause(observer, False)
@@ -65,6 +69,13 @@ class TestLockstepWithController:
         assert stamps_ms(balls)[0] % 20 == 0
         observer.spin(lambda: len(states) > count + 50)
         assert (np.diff(stamps_ms(states[count - 10:])) == 1).all()
+
+    def test_the_simulators_service_takes_a_valid_seed_and_no_other_parameter(self, observer, states):
+        results = set_parameters(
+            observer, Parameter('seed', value=-1), Parameter('seed', value='one'), Parameter('paced', value=True),
+            Parameter('seed', value=8))
+        assert [result.successful for result in results] == [False, False, False, True]
+        assert "takes seed alone, not 'paced'" in results[2].reason
 
     def test_a_push_tilts_the_tray_while_it_lasts(self, observer, states):
         assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success
@@ -115,7 +126,7 @@ class TestLockstepAnsweredByHand:
         commands.publish(Float64MultiArray(data=[1e9] * 7))
         observer.spin(lambda: stamps_ms(states)[-1] == before + 1)
         assert list(states[-1].effort) == [87.0] * 4 + [12.0] * 3
-        node.wait_for_log('until torque_ctrl_node answers')
+        node.wait_for_log('until the controller answers')
 
 
 def test_free_running_goes_on_without_torques_on_its_brakes(start_node, observer):

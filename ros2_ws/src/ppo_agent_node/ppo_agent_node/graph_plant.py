@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -17,17 +16,16 @@ from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.serialized import stamp_of
 from shared_control_ros.stamps import set_ns, to_ns
+from shared_control_ros.wrenches import base_wrench, set_moment
 
+from .applied_moment import AppliedMoment
 from .simulator import Simulator
-from .wrench_track import WrenchTrack
 
 PERIOD_NS = round(POLICY_PERIOD * 1e9)
 GAP_NS = 1_000_000_000
 """An episode may miss as much when the machine is busy, not more."""
 JOINTS_SECONDS = 0.5
 """How long the joints of a ball's stamp may be overdue, s; they are sent before it."""
-COMMAND_TIMEOUT = 0.1
-"""A wrench of the human that is older counts as zero, as in torque_ctrl_node, s."""
 
 
 class GraphPlant:
@@ -52,12 +50,11 @@ class GraphPlant:
         self._balls = Polled(node, contract.BALL, depth=contract.BALL.qos.depth)
         self._joints = Polled(
             node, contract.JOINT_STATES_THROTTLE, depth=contract.JOINT_STATES_THROTTLE.qos.depth, raw=True)
-        self._human = WrenchTrack(node, contract.HUMAN_WRENCH, COMMAND_TIMEOUT)
-        self._applied = WrenchTrack(node, contract.APPLIED_WRENCH)
+        self._moments = [AppliedMoment(node, topic) for topic in (
+            contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.APPLIED_WRENCH)]
         self._publisher = node.create_publisher(
             contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)
-        self._wrench = WrenchStamped()
-        self._wrench.header.frame_id = contract.BASE_FRAME
+        self._wrench = base_wrench()
         self._stamp_ns = 0
         self._last_number = 0
         self.late_steps = 0
@@ -65,9 +62,9 @@ class GraphPlant:
 
     def wait_until_up(self) -> None:
         """Wait until the simulator and the controller are there."""
-        while not (self._simulator.is_there() and self._applied.publisher_count()):
+        while not (self._simulator.is_there() and self._moments[0].publisher_count()):
             self._node.get_logger().info(
-                'waiting for panda_sim_node and torque_ctrl_node', throttle_duration_sec=5.0)
+                'waiting for the simulator and the controller', throttle_duration_sec=5.0)
             time.sleep(0.1)
             self._attend()
 
@@ -77,23 +74,22 @@ class GraphPlant:
         self._simulator.reset(seed, self._attend)
         for queue in (self._balls, self._joints):
             queue.clear()
-        self._human.clear()
-        self._applied.clear()
+        for moment in self._moments:
+            moment.clear()
         self._last_number = 0
         self._simulator.pause(False, self._attend)
         ball = self._next_ball()
-        return self._read(ball, to_ns(ball.header.stamp), np.zeros(1))
+        return self._read(ball)
 
     def advance(self, agent: np.ndarray) -> PlantState:
         """See :meth:`Plant.advance`."""
-        self._publish(float(agent[0]))
-        started_ns = self._stamp_ns
+        self._publish(agent)
         ball = self._next_ball()
-        step_ns = to_ns(ball.header.stamp) - started_ns
+        step_ns = to_ns(ball.header.stamp) - self._stamp_ns
         if not 0 < step_ns <= GAP_NS:
             raise PlantInterrupted(f'the stamps on {self._balls.topic_name} jumped by {step_ns * 1e-9:.3f} s')
         self.late_steps += step_ns // PERIOD_NS - 1
-        return self._read(ball, started_ns, agent)
+        return self._read(ball)
 
     def rest(self) -> None:
         """Ask for nothing, and stop time."""
@@ -105,13 +101,13 @@ class GraphPlant:
         while (ball := self._balls.take()) is not None:
             self._stamp_ns = to_ns(ball.header.stamp)
         if self._stamp_ns:
-            self._publish(0.0)
+            self._publish(np.zeros(1))
         self._attend()
 
-    def _publish(self, m_y_agent: float) -> None:
-        """M_yai, N m, as the answer to the last observation."""
+    def _publish(self, agent: np.ndarray) -> None:
+        """The agent's moment, (1,), N m, as the answer to the last observation."""
         set_ns(self._wrench.header.stamp, self._stamp_ns)
-        self._wrench.wrench.torque.y = m_y_agent
+        set_moment(self._wrench, agent)
         self._publisher.publish(self._wrench)
 
     def _next_ball(self) -> Odometry:
@@ -130,7 +126,7 @@ class GraphPlant:
             if time.monotonic() - silent_since > 1.0:
                 self._node.get_logger().info(
                     f'{self._balls.topic_name} has been silent for {time.monotonic() - silent_since:.0f} s: paused, or '
-                    'waiting for torque_ctrl_node', throttle_duration_sec=5.0)
+                    'waiting for the controller', throttle_duration_sec=5.0)
         return newest
 
     def _check_sender(self, number: int) -> None:
@@ -149,14 +145,13 @@ class GraphPlant:
             f'{contract.BASE_FRAME!r}), position {position}, velocity {velocity}', throttle_duration_sec=1.0)
         return False
 
-    def _read(self, ball: Odometry, started_ns: int, agent: np.ndarray) -> PlantState:
-        """The state at the tick of ``ball``, at the end of a period that began at ``started_ns``."""
+    def _read(self, ball: Odometry) -> PlantState:
+        """The state at the tick of ``ball``, with the moments that counted just before it."""
         self._stamp_ns = to_ns(ball.header.stamp)
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
         return PlantState(
             self._joints_at(self._stamp_ns), (position.x, position.y, position.z),
-            (velocity.x, velocity.y, velocity.z), np.array([self._human.at(started_ns)]), agent,
-            np.array([self._applied.at(self._stamp_ns - 1)]))
+            (velocity.x, velocity.y, velocity.z), *(moment.before(self._stamp_ns) for moment in self._moments))
 
     def _joints_at(self, stamp_ns: int) -> np.ndarray:
         """Joint positions at a tick, (7,), rad."""
@@ -175,5 +170,5 @@ class GraphPlant:
     def close(self) -> None:
         """Leave no moment behind."""
         if self._stamp_ns:
-            self._publish(0.0)
+            self._publish(np.zeros(1))
             self._publisher.wait_for_all_acked(Duration(nanoseconds=200_000_000))

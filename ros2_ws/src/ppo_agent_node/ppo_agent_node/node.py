@@ -1,8 +1,9 @@
 """PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
 
-Takes /ball, /joint_states_throttle, /human/target_wrench and /target_wrench, publishes /agent/target_wrench and
-/training/*, pauses and resets the simulator between episodes. Services (Trigger): ~/start: end the practice;
-~/repeat: start the episode over; ~/finish: end the teaching after this episode.
+Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench and /target_wrench, publishes
+/agent/target_wrench and /training/*, pauses and resets the simulator between episodes. Services (Trigger):
+learner/start: end the practice; learner/repeat: start the episode over; learner/finish: end the teaching after this
+episode.
 """
 
 import time
@@ -25,6 +26,7 @@ from shared_control_learning.learner import Learner
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
 from shared_control_learning.presets import preset
 from shared_control_learning.warm_up import warm_up
+from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import ParameterError, declare
@@ -53,8 +55,8 @@ class PpoAgentNode(Callbacks):
             node, 'preset', 'coached', 'What is learned and how (mode teach).', choices=names(LEARNERS))
         seed = declare(node, 'seed', 0, 'Of weights, exploration and ball starts.', minimum=0, maximum=2**31 - 1)
         self._episodes = declare(
-            node, 'episodes', 0, 'Teach until this many, those of an earlier run included; 0: until ~/finish is '
-            'called or the time is up.', minimum=0, maximum=100_000)
+            node, 'episodes', 0, 'Teach until this many, those of an earlier run included; 0: until '
+            'learner/finish is called or the time is up.', minimum=0, maximum=100_000)
         self._episode_seconds = declare(
             node, 'episode_seconds', BALANCE.episode_seconds, 'The longest an episode of teaching lasts.',
             unit='s', minimum=1.0, maximum=600.0)
@@ -64,8 +66,8 @@ class PpoAgentNode(Callbacks):
             node, 'test_episodes', 0, 'Test the policy alone with so many episodes on the graph, in the end.',
             minimum=0, maximum=1000)
         self._practises = declare(
-            node, 'practice', False, 'Before a new learner is taught, the person alone moves the tray until ~/start '
-            'is called (3.4).')
+            node, 'practice', False, 'Before a new learner is taught, the person alone moves the tray until '
+            'learner/start is called (3.4).')
         output = declare(
             node, 'output', '', f'Folder for {POLICY_NAME} and {TABLE_NAME}; a learner that is there goes on. Empty: '
             'nothing is kept.')
@@ -90,9 +92,9 @@ class PpoAgentNode(Callbacks):
         self._background = Background(node)
         self._plant = GraphPlant(node, self._background, self._attend)
         self._stop: Stop | None = None
-        node.create_service(Trigger, '~/start', self._on_start)
-        node.create_service(Trigger, '~/repeat', self._on_repeat)
-        node.create_service(Trigger, '~/finish', self._on_finish)
+        node.create_service(Trigger, contract.START_SERVICE, self._on_start)
+        node.create_service(Trigger, contract.REPEAT_SERVICE, self._on_repeat)
+        node.create_service(Trigger, contract.FINISH_SERVICE, self._on_finish)
 
     def _make_learner(self, preset_name: str, seed: int, output: str, resume: bool) -> Learner:
         """A new learner, or the one in the output folder."""

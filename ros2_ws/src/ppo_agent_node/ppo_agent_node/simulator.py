@@ -1,4 +1,4 @@
-"""The services of panda_sim_node, called one after the other."""
+"""The services of a simulator, called one after the other."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +12,6 @@ from std_srvs.srv import SetBool, Trigger
 
 ANSWER_SECONDS = 3.0
 """A simulator that does not answer for this long is asked again: it may have been restarted meanwhile."""
-SET_PARAMETERS_SERVICE = 'panda_sim_node/set_parameters'
 
 
 class Simulator:
@@ -30,7 +29,7 @@ class Simulator:
         self._background = background
         self._pause = node.create_client(SetBool, contract.PAUSE_SERVICE)
         self._reset = node.create_client(Trigger, contract.RESET_SERVICE)
-        self._set_parameters = node.create_client(SetParameters, SET_PARAMETERS_SERVICE)
+        self._seed = node.create_client(SetParameters, contract.SEED_SERVICE)
 
     def pause(self, paused: bool, attend: Callable[[], None]) -> None:
         """Stop time, or let it go on."""
@@ -40,12 +39,12 @@ class Simulator:
         """Drop the ball anew; a ``seed`` begins the sequence of ball starts anew."""
         if seed is not None:
             parameter = Parameter('seed', value=seed).to_parameter_msg()
-            self._call(self._set_parameters, SetParameters.Request(parameters=[parameter]), attend)
+            self._call(self._seed, SetParameters.Request(parameters=[parameter]), attend)
         self._call(self._reset, Trigger.Request(), attend)
 
     def is_there(self) -> bool:
         """Whether its services are up."""
-        return all(client.service_is_ready() for client in (self._pause, self._reset, self._set_parameters))
+        return all(client.service_is_ready() for client in (self._pause, self._reset, self._seed))
 
     def _call(self, client: Any, request: Any, attend: Callable[[], None]) -> None:
         waited = 0.0
@@ -60,7 +59,7 @@ class Simulator:
             waited += 0.05
             if waited > ANSWER_SECONDS:
                 self._node.get_logger().warning(
-                    f'no answer on {client.srv_name}: is panda_sim_node running?', throttle_duration_sec=5.0)
+                    f'no answer on {client.srv_name}: is the simulator running?', throttle_duration_sec=5.0)
                 future = None
                 waited = 0.0
             attend()

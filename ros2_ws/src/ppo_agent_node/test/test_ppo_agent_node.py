@@ -59,7 +59,7 @@ def test_teaches_tests_and_keeps_everything(graph, start_node, observer, phases,
 
 
 def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, output):
-    """Simulator killed in mid-episode, a pause by a person, ~/finish, agent killed, resumed, told to leave."""
+    """Simulator killed in mid-episode, a pause by a person, learner/finish, agent killed, resumed, told to leave."""
     left, reports = observer.listen(contract.TIME_LEFT), observer.listen(contract.DIAGNOSTICS)
     agent = start_node('ppo_agent_node', output=output, episode_seconds=5.0)
     observer.spin(lambda: left and left[-1].data < 4.5, 40.0, 'an episode is under way')

@@ -4,7 +4,7 @@ Takes /ball, /joint_states_throttle and the three wrenches; publishes /robot_des
 robot_state_publisher set ``arm`` to false: it then leaves description and arm to that node.
 """
 
-import math
+from contextlib import suppress
 
 import numpy as np
 from geometry_msgs.msg import TransformStamped
@@ -24,6 +24,7 @@ from shared_control_ros.joints import joint_positions
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.wrenches import moment_of
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -123,8 +124,9 @@ class RobotViewNode:
         """What a source asks for at the moment, N m."""
         wrenches, moment = self._wrenches[source]
         message = wrenches.take()
-        if message is not None and math.isfinite(message.wrench.torque.y):
-            moment.moment, moment.stamp_ns = np.array([message.wrench.torque.y]), to_ns(message.header.stamp)
+        if message is not None:
+            with suppress(ValueError):
+                moment.moment, moment.stamp_ns = moment_of(message), to_ns(message.header.stamp)
         return float(moment.at(now_ns, STALE_AFTER)[0])
 
     def close(self) -> None:

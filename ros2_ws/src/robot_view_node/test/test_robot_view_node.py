@@ -1,6 +1,7 @@
 """The node beside a running simulator and controller."""
 
 import pytest
+from geometry_msgs.msg import WrenchStamped
 from panda_tray_description import URDF_PATH
 from robot_view_node.node import MARKERS, ROBOT_DESCRIPTION
 from shared_control_ros import contract
@@ -44,7 +45,7 @@ class TestBesideTheSimulator:
         def press():
             """Send the moment once more; whether it was shown."""
             if clocks:
-                wrench = contract.WrenchStamped()
+                wrench = WrenchStamped()
                 wrench.header.frame_id = contract.BASE_FRAME
                 wrench.header.stamp = clocks[-1].clock
                 wrench.wrench.torque.y = 5.0

@@ -24,8 +24,6 @@ POLL_PERIOD = 0.02
 """s. Taking what has come every 20 ms costs a fraction of waking up for every message."""
 SERVICE_POLLS = 5
 """Services (parameters) are looked after every so many polls: that costs as much as a poll."""
-DEPTH = 2000
-"""Messages that may wait for each topic: two seconds of a 1 kHz topic."""
 
 
 class RecordedTopic:
@@ -35,7 +33,7 @@ class RecordedTopic:
         self._node = node
         self._topic = topic
         self._subscription = Polled(node, topic, raw=True, qos_profile=QoSProfile(
-            depth=DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
+            depth=contract.RECORDER_DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
         self._waiting: deque[tuple[bytes, dict]] = deque()
         self.name = self._subscription.topic_name
         self.latched = topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
@@ -93,7 +91,7 @@ class SessionRecorder:
         self._flush_period: float = declare(
             self.node, 'flush_period', 0.25, 'At most this much is lost when the recorder is killed.',
             unit='s', minimum=0.05, maximum=0.5)
-        self._topics = [RecordedTopic(self.node, topic) for topic in contract.TOPICS]
+        self._topics = [RecordedTopic(self.node, topic) for topic in contract.BAG_TOPICS]
         # After a long recording was killed, this takes a while. What comes meanwhile is recorded, too.
         self._bag = BagWriter(output, meanwhile=self._collect)
         for recovered in self._bag.recovered:

@@ -24,11 +24,6 @@ TRAFFIC = (
 """Topics and their periods in ms, as in a session."""
 
 
-def full_name(topic: Topic) -> str:
-    """A topic's name without a namespace."""
-    return '/' + topic.name.removeprefix('/')
-
-
 @pytest.fixture
 def ros_domain(domain_id: int) -> int:
     """A DDS domain that no other test on this machine uses meanwhile."""
@@ -81,7 +76,7 @@ class Traffic:
         self.node = Node('traffic', context=self._context)
         topics = [topic for topic, _ in TRAFFIC] + [contract.EPISODE]
         self._publishers = {
-            full_name(topic): self.node.create_publisher(topic.msg_type, topic.name, topic.qos) for topic in topics}
+            topic.full_name: self.node.create_publisher(topic.msg_type, topic.name, topic.qos) for topic in topics}
         self._seen: set[bytes] = set()
         self.sent: dict[str, list[bytes]] = {topic: [] for topic in self._publishers}
 
@@ -98,8 +93,8 @@ class Traffic:
     def publish(self, topic: Topic, message: object) -> None:
         """Publish and remember one message: as bytes, since its padding differs each time it is serialized."""
         data = serialize_message(message)
-        self.sent[full_name(topic)].append(data)
-        self._publishers[full_name(topic)].publish(data)
+        self.sent[topic.full_name].append(data)
+        self._publishers[topic.full_name].publish(data)
 
     def run(self, seconds: float) -> None:
         """Publish at the rates of a session."""

@@ -12,7 +12,7 @@ from rosbags.rosbag2 import Reader
 from session_recorder_node import recover
 from shared_control_ros import contract
 
-ALL_TOPICS = {'/' + topic.name.removeprefix('/') for topic in contract.TOPICS}
+ALL_TOPICS = {topic.full_name for topic in contract.BAG_TOPICS}
 
 
 def read_with_rosbags(bag):

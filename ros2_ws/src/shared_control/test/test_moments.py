@@ -11,13 +11,21 @@ def test_a_command_counts_until_its_timeout_and_then_fades():
     assert freshness(0.1 + FADE_TIME, 0.1) == freshness(100.0, 0.1) == 0.0
 
 
+def test_a_stamp_far_ahead_counts_nothing():
+    """Time was set back: the simulator was started anew."""
+    assert freshness(-0.1, 0.1) == 1.0
+    assert freshness(-0.1001, 0.1) == freshness(-100.0, 0.1) == 0.0
+
+
 def test_a_silent_source_ends_at_zero():
     source = MomentSource(2)
     source.moment, source.stamp_ns = np.array([5.0, -2.0]), 1_000_000_000
     np.testing.assert_array_equal(source.at(1_050_000_000, 0.1), [5.0, -2.0])
     assert 0.0 < source.at(1_150_000_000, 0.1)[0] < 5.0
     np.testing.assert_array_equal(source.at(2_000_000_000, 0.1), [0.0, 0.0])
-    assert source.is_stale(1_150_000_000, 0.1) and not source.is_stale(1_050_000_000, 0.1)
+    np.testing.assert_array_equal(source.at(950_000_000, 0.1), [5.0, -2.0])
+    np.testing.assert_array_equal(source.at(500_000_000, 0.1), [0.0, 0.0])
+    assert source.age(1_150_000_000) == pytest.approx(0.15) and source.age(500_000_000) == pytest.approx(-0.5)
 
 
 def test_the_sum_is_limited_about_each_axis():

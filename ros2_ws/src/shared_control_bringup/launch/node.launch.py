@@ -1,6 +1,6 @@
 """One node of the graph alone, with the parameters of a session, started again when it dies.
 
-The controller starts disabled here, and again when it has died: a person calls torque_ctrl_node/enable.
+The controller starts disabled here, and again when it has died: a person calls controller/enable.
 """
 
 from launch import LaunchContext, LaunchDescription

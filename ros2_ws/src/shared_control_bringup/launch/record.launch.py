@@ -3,8 +3,8 @@
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from shared_control.contract import BAG_TOPICS
 from shared_control_bringup.launching import SHARE, environment
-from shared_control_ros.contract import TOPICS
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -17,6 +17,6 @@ def generate_launch_description() -> LaunchDescription:
                  '--storage-config-file', PathJoinSubstitution([SHARE, 'bags', 'mcap_writer_options.yaml']),
                  '--qos-profile-overrides-path', PathJoinSubstitution([SHARE, 'bags', 'qos_overrides.yaml']),
                  '--include-unpublished-topics', '--topics',
-                 *(f'/{topic.name.removeprefix("/")}' for topic in TOPICS)],
+                 *(topic.full_name for topic in BAG_TOPICS)],
             output='screen'),
     ])

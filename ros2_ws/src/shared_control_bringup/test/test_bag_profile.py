@@ -10,11 +10,11 @@ from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from session_recorder_node.bag.writer import BagWriter
-from session_recorder_node.node import DEPTH
-from shared_control_ros.contract import TOPICS
+from shared_control.contract import RECORDER_DEPTH
+from shared_control.contract_tables import qos_overrides, record_arguments
+from shared_control_ros.contract import BAG_TOPICS
 
 PACKAGE = Path(__file__).parents[1]
-NAMES = ['/' + topic.name.removeprefix('/') for topic in TOPICS]
 
 
 @pytest.fixture
@@ -28,14 +28,15 @@ def recorded(tmp_path):
 
 
 def test_overrides_are_the_recorders_subscriptions():
-    overrides = yaml.safe_load((PACKAGE / 'bags' / 'qos_overrides.yaml').read_text())
-    assert list(overrides) == NAMES
-    for topic, override in zip(TOPICS, overrides.values(), strict=True):
+    text = (PACKAGE / 'bags' / 'qos_overrides.yaml').read_text()
+    assert text == qos_overrides(), 'python -m shared_control.contract_tables qos_overrides'
+    for topic, override in zip(BAG_TOPICS, yaml.safe_load(text).values(), strict=True):
         asked = QoSProfile(
             history=HistoryPolicy.get_from_short_key(override['history']), depth=override['depth'],
             reliability=ReliabilityPolicy.get_from_short_key(override['reliability']),
             durability=DurabilityPolicy.get_from_short_key(override['durability']))
-        assert asked == QoSProfile(depth=DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability)
+        assert asked == QoSProfile(
+            depth=RECORDER_DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability)
 
 
 def test_storage_options_are_those_of_the_recorders_files(recorded):
@@ -53,7 +54,7 @@ def test_storage_options_are_those_of_the_recorders_files(recorded):
 def test_the_documented_command_names_all_topics_and_files():
     readme = (PACKAGE / 'README.md').read_text()
     command = re.search(r'ros2 bag record (.*?)(?:\n\n|\Z)', readme, re.DOTALL).group(1).replace('\\\n', ' ').split()
-    assert command[command.index('--topics') + 1:] == NAMES
+    assert record_arguments() in readme, 'python -m shared_control.contract_tables record_arguments'
     assert '--include-unpublished-topics' in command
     for option in ('--qos-profile-overrides-path', '--storage-config-file'):
         assert (PACKAGE / 'bags' / Path(command[command.index(option) + 1]).name).is_file()

@@ -12,7 +12,7 @@ from shared_control.robot.limits import JOINT_NAMES
 from shared_control_ros.contract import BASE_FRAME, TOPICS
 
 VIEWS = Path(__file__).parents[1] / 'views'
-TYPES = {'/' + topic.name.removeprefix('/'): topic.msg_type for topic in (*TOPICS, MARKERS, ROBOT_DESCRIPTION)}
+TYPES = {topic.full_name: topic.msg_type for topic in (*TOPICS, MARKERS, ROBOT_DESCRIPTION)}
 NUMBER = r'(double|float|u?int\d+|bool)'
 
 
@@ -75,4 +75,4 @@ def test_rviz_shows_what_is_published_with_the_qos_of_the_publisher():
                 shown[display[key]['Value']] = display[key]['Durability Policy']
     assert shown == {'/robot_description': 'Transient Local', '/markers': 'Volatile'}
     for topic in (ROBOT_DESCRIPTION, MARKERS):
-        assert shown['/' + topic.name] == topic.qos.durability.name.replace('_', ' ').title()
+        assert shown[topic.full_name] == topic.qos.durability.name.replace('_', ' ').title()

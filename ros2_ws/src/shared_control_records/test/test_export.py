@@ -7,6 +7,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+from shared_control import contract
 from shared_control.cli import main
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_records.bag.reader import read_bag
@@ -44,12 +45,20 @@ def test_a_frame_a_policy_step_with_who_did_what(frames, lessons):
         assert frame.q == pytest.approx(np.tile(Q_REFERENCE, (len(frame), 1)))
 
 
-def test_a_source_that_falls_silent_counts_no_longer(lessons, tmp_path):
+def test_moments_are_those_that_counted_not_those_that_were_asked_for(lessons, tmp_path):
     recording = made.record(lessons[:1])
-    recording.drop(made.topics.HUMAN_WRENCH, 11, 40)
+    for sent in recording.of(contract.HUMAN_APPLIED):
+        sent.wrench.torque.y /= 2.0
     human = episode_frames(read_bag(recording.write(tmp_path / 'bag')))[0].m_y_human
-    assert abs(human[10]) == abs(human[14]) == 5.0
-    assert not human[20:].any()
+    assert human == pytest.approx(lessons[0].m_y_human / 2.0)
+    assert abs(human[10]) == 2.5
+
+
+@pytest.mark.parametrize('topic', made.APPLIED)
+def test_a_bag_without_the_moments_that_counted_is_refused(lessons, tmp_path, topic):
+    bag = read_bag(made.record(lessons[:1]).write(tmp_path / 'bag', without=(topic,)))
+    with pytest.raises(ValueError, match=f'no messages on {topic.full_name}'):
+        episode_frames(bag)
 
 
 def test_parquet_is_read_back_with_units(frames, tmp_path):

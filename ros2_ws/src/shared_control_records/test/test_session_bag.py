@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from shared_control import contract
 from shared_control.keys import Key
 from shared_control.robot.limits import DOF
-from shared_control_records import topics
 from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import episode_tracks
 from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_records.bag.timing import simulator_runs
 from shared_control_testing import sessions as made
 
 
@@ -16,47 +17,49 @@ def recording():
     return made.record([made.lesson(50, seed=1), made.lesson(50, seed=2)])
 
 
-def test_topics_are_those_of_the_contract():
-    contract = pytest.importorskip('shared_control_ros.contract')
-    assert set(topics.TOPICS) == {'/' + topic.name.lstrip('/') for topic in contract.TOPICS}
-    assert topics.BASE_FRAME == contract.BASE_FRAME
-    for topic in contract.TOPICS:
-        package, _, name = topic.msg_type.__module__.split('.')[0], None, topic.msg_type.__name__
-        assert made.TYPES['/' + topic.name.lstrip('/')] == f'{package}/msg/{name}'
-
-
 def test_every_message_comes_back(recording, tmp_path):
     bag = read_bag(recording.write(tmp_path / 'bag'))
-    states = recording.of(topics.JOINT_STATES)
+    states = recording.of(contract.JOINT_STATES)
     joints = bag.joint_states
-    assert bag.counts[topics.JOINT_STATES] == len(joints.stamp_ns) == 2000
-    assert bag.counts[topics.DISTURBANCE] == 0
+    assert bag.counts[contract.JOINT_STATES.full_name] == len(joints.stamp_ns) == 2000
+    assert bag.counts[contract.DISTURBANCE.full_name] == 0
     assert not bag.unusable
     np.testing.assert_array_equal(np.diff(joints.stamp_ns), 1_000_000)
     assert joints.stamp_ns[0] == made.START_NS
     np.testing.assert_array_equal(joints.q, [state.position for state in states])
     np.testing.assert_array_equal(joints.qd, [state.velocity for state in states])
     np.testing.assert_array_equal(joints.effort, [state.effort for state in states])
-    np.testing.assert_array_equal(bag.commands.torque, [sent.data for sent in recording.of(topics.EFFORT_COMMANDS)])
-    np.testing.assert_array_equal(bag.agent.m_y, [w.wrench.torque.y for w in recording.of(topics.AGENT_WRENCH)])
-    np.testing.assert_array_equal(bag.ball.position[:, 0], [b.pose.pose.position.x for b in recording.of(topics.BALL)])
-    np.testing.assert_array_equal(bag.training[topics.EPISODE].values, [1, 2])
-    np.testing.assert_array_equal(bag.training[topics.PHASE].values, ['teach', 'teach'])
+    np.testing.assert_array_equal(bag.commands.torque, [sent.data for sent in recording.of(contract.EFFORT_COMMANDS)])
+    np.testing.assert_array_equal(bag.agent.m_y, [w.wrench.torque.y for w in recording.of(contract.AGENT_WRENCH)])
+    balls = recording.of(contract.BALL)
+    np.testing.assert_array_equal(bag.ball.position[:, 0], [ball.pose.pose.position.x for ball in balls])
+    np.testing.assert_array_equal(bag.training[contract.EPISODE].values, [1, 2])
+    np.testing.assert_array_equal(bag.training[contract.PHASE].values, ['teach', 'teach'])
     assert bag.statuses['panda_sim_node'][-1].number('ticks') == 2000
     assert bag.statuses['panda_sim_node'][-1].number('nothing') is None
+
+
+def test_a_simulator_is_known_by_what_it_reports(tmp_path):
+    recording = made.Recording()
+    for second, node, ticks in ((1, 'robot1/a_simulator', 900), (2, 'robot1/a_simulator', 1900), (3, 'another', 700)):
+        at = made.START_NS + second * 1_000_000_000
+        recording.add(contract.DIAGNOSTICS, at, made.simulator_status(at, ticks, node))
+        recording.add(contract.DIAGNOSTICS, at + 1, made.status(at, 'mock_panda_node', ticks=5 * ticks))
+    runs = simulator_runs(read_bag(recording.write(tmp_path / 'bag')))
+    assert [run.number('ticks') for run in runs] == [1900, 700]
 
 
 def test_a_bag_of_several_blocks_with_odd_messages(recording, tmp_path, monkeypatch):
     """The fast way of decoding gives what the ordinary one gives, whatever comes between."""
     monkeypatch.setattr(bulk, 'BLOCK', 300)
-    states = recording.of(topics.JOINT_STATES)
+    states = recording.of(contract.JOINT_STATES)
     states[0].header.frame_id = 'a_longer_name_than_the_others'
     states[700].header.frame_id = 'as_long_as1'
     states[701].name = states[701].name[:3]
     states[702].name = list(reversed(states[702].name))
-    recording.of(topics.EFFORT_COMMANDS)[5].data = np.zeros(2)
+    recording.of(contract.EFFORT_COMMANDS)[5].data = np.zeros(2)
     bag = read_bag(recording.write(tmp_path / 'bag'))
-    assert bag.unusable == {topics.JOINT_STATES: 2, topics.EFFORT_COMMANDS: 1}
+    assert bag.unusable == {'/joint_states': 2, '/effort_controller/commands': 1}
     usable = [state for index, state in enumerate(states) if index not in (701, 702)]
     np.testing.assert_array_equal(bag.joint_states.effort, [state.effort for state in usable])
     assert bag.commands.torque.shape == (1999, DOF)
@@ -67,11 +70,11 @@ def test_presses_are_rising_edges_of_each_source(tmp_path):
     for index, (source, buttons) in enumerate((
             ('tutor', (0, 0, 0)), ('tutor', (1, 0, 0)), ('page', (1, 0, 0)), ('tutor', (1, 0, 0)),
             ('tutor', (0, 0, 1)), ('tutor', (1,)), ('tutor', (1, 0, 1)))):
-        recording.add(topics.KEYS, made.START_NS + index, made.keys(made.START_NS, source, buttons))
+        recording.add(contract.KEYS, made.START_NS + index, made.keys(made.START_NS, source, buttons))
     bag = read_bag(recording.write(tmp_path / 'bag'))
     assert [(press.source, press.key) for press in bag.presses] == [
         ('tutor', Key.LEFT), ('page', Key.LEFT), ('tutor', Key.SPACE), ('tutor', Key.LEFT)]
-    assert bag.unusable == {topics.KEYS: 1}
+    assert bag.unusable == {'/human/keys': 1}
 
 
 def test_an_empty_bag(tmp_path):
@@ -100,7 +103,7 @@ def test_bags_that_cannot_be_read(recording, tmp_path):
 def test_tracks_of_the_finished_episodes(tmp_path):
     lessons = [made.lesson(50, seed=seed) for seed in range(3)]
     recording = made.record(lessons)
-    recording.drop(topics.EPISODE_RETURN, 1, 1)  # the second episode was broken off
+    recording.drop(contract.EPISODE_RETURN, 1, 1)  # the second episode was broken off
     tracks = episode_tracks(read_bag(recording.write(tmp_path / 'bag')))
     assert [(track.number, track.phase) for track in tracks] == [(1, 'teach'), (3, 'teach')]
     np.testing.assert_allclose(tracks[1].position_error[::2], lessons[2].position_error, atol=1e-12)

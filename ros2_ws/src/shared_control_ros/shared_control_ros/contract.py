@@ -1,17 +1,15 @@
-"""The topics of the graph: names, types and quality of service (design, section 3)."""
+"""The table of :mod:`shared_control.contract` for rclpy: message types and QoS profiles."""
 
+import importlib
 from dataclasses import dataclass
+from functools import cache
 
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
-from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState, Joy
-from std_msgs.msg import Bool, Float64, Float64MultiArray, Int32, String
+from shared_control import contract as table
 
-BASE_FRAME = 'panda_link0'
-BALL_FRAME = 'ball'
+BASE_FRAME = table.BASE_FRAME
+BALL_FRAME = table.BALL_FRAME
+RECORDER_DEPTH = table.RECORDER_DEPTH
 
 
 def qos(depth: int = 1) -> QoSProfile:
@@ -30,47 +28,61 @@ def qos_latched(depth: int = 100) -> QoSProfile:
 
 @dataclass(frozen=True)
 class Topic:
-    """One topic of the contract. Its name is relative, so that a namespace or a remapping reaches it."""
+    """One topic. Its name is relative, so that a namespace or a remapping reaches it."""
 
     name: str
     msg_type: type
     qos: QoSProfile
-    """What publishers offer. A second's worth of messages, so that a recorder loses none."""
+    """What publishers offer."""
+
+    @property
+    def full_name(self) -> str:
+        """The name in a graph without a namespace."""
+        return '/' + self.name.removeprefix('/')
 
 
-JOINT_STATES = Topic('joint_states', JointState, qos(1000))
-JOINT_STATES_THROTTLE = Topic('joint_states_throttle', JointState, qos(100))
-"""Every tenth of them, for those who need no more: each reader of the 1 kHz topic makes the robot's tick longer. (On a
-robot that does not publish it, ``topic_tools throttle messages joint_states 100`` does.) A bag has the whole topic."""
-EFFORT_COMMANDS = Topic('effort_controller/commands', Float64MultiArray, qos(1000))
-KEYS = Topic('human/keys', Joy, qos(50))
-HUMAN_WRENCH = Topic('human/target_wrench', WrenchStamped, qos(50))
-AGENT_WRENCH = Topic('agent/target_wrench', WrenchStamped, qos(50))
-APPLIED_WRENCH = Topic('target_wrench', WrenchStamped, qos(1000))
-BALL = Topic('ball', Odometry, qos(100))
-DISTURBANCE = Topic('disturbance', WrenchStamped, qos(10))
-EMERGENCY_STOP = Topic('emergency_stop', Bool, qos(10))
-"""True stops the controller, whoever says so; false changes nothing."""
-DIAGNOSTICS = Topic('diagnostics', DiagnosticArray, qos(10))
-CLOCK = Topic('/clock', Clock, qos(100))
-"""Absolute: rclpy looks for it there, whatever the namespace."""
+@cache
+def ros_topic(entry: table.Topic) -> Topic:
+    """An entry of the table with its message type and its publishers' quality of service."""
+    package, folder, name = entry.type.split('/')
+    msg_type = getattr(importlib.import_module(f'{package}.{folder}'), name)
+    return Topic(entry.name, msg_type, qos_latched(entry.depth) if entry.latched else qos(entry.depth))
 
 
-EPISODE = Topic('training/episode', Int32, qos_latched())
-PHASE = Topic('training/phase', String, qos_latched())
-TIME_LEFT = Topic('training/time_left', Float64, qos_latched(1))
-EPISODE_RETURN = Topic('training/episode_return', Float64, qos_latched())
-HUMAN_SHARE = Topic('training/human_share', Float64, qos_latched(1))
-SUCCESS = Topic('training/success', Float64, qos_latched())
+JOINT_STATES = ros_topic(table.JOINT_STATES)
+JOINT_STATES_THROTTLE = ros_topic(table.JOINT_STATES_THROTTLE)
+EFFORT_COMMANDS = ros_topic(table.EFFORT_COMMANDS)
+KEYS = ros_topic(table.KEYS)
+HUMAN_WRENCH = ros_topic(table.HUMAN_WRENCH)
+AGENT_WRENCH = ros_topic(table.AGENT_WRENCH)
+APPLIED_WRENCH = ros_topic(table.APPLIED_WRENCH)
+HUMAN_APPLIED = ros_topic(table.HUMAN_APPLIED)
+AGENT_APPLIED = ros_topic(table.AGENT_APPLIED)
+BALL = ros_topic(table.BALL)
+DISTURBANCE = ros_topic(table.DISTURBANCE)
+EMERGENCY_STOP = ros_topic(table.EMERGENCY_STOP)
+DIAGNOSTICS = ros_topic(table.DIAGNOSTICS)
+CLOCK = ros_topic(table.CLOCK)
+EPISODE = ros_topic(table.EPISODE)
+PHASE = ros_topic(table.PHASE)
+TIME_LEFT = ros_topic(table.TIME_LEFT)
+EPISODE_RETURN = ros_topic(table.EPISODE_RETURN)
+HUMAN_SHARE = ros_topic(table.HUMAN_SHARE)
+SUCCESS = ros_topic(table.SUCCESS)
 
-TOPICS = (
-    JOINT_STATES, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH, BALL,
-    DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
-"""Every topic of the contract; a recorder records these."""
+TRAINING = tuple(map(ros_topic, table.TRAINING))
+TOPICS = tuple(map(ros_topic, table.TOPICS))
+BAG_TOPICS = tuple(map(ros_topic, table.BAG_TOPICS))
+"""What a recorder records."""
 
-RESET_SERVICE = 'panda_sim_node/reset'
-PAUSE_SERVICE = 'panda_sim_node/pause'
-ENABLE_SERVICE = 'torque_ctrl_node/enable'
-FINISH_SERVICE = 'ppo_agent_node/finish'
-START_SERVICE = 'ppo_agent_node/start'
-REPEAT_SERVICE = 'ppo_agent_node/repeat'
+RESET_SERVICE = table.RESET.name
+PAUSE_SERVICE = table.PAUSE.name
+SEED_SERVICE = table.SEED.name
+START_SERVICE = table.LEARNER_START.name
+REPEAT_SERVICE = table.LEARNER_REPEAT.name
+FINISH_SERVICE = table.LEARNER_FINISH.name
+ENABLE_SERVICE = table.CONTROLLER_ENABLE.name
+EMERGENCY_STOP_SERVICE = table.CONTROLLER_STOP.name
+RESET_EMERGENCY_STOP_SERVICE = table.CONTROLLER_RESET.name
+ROBOT_ENABLE_SERVICE = table.ROBOT_ENABLE.name
+ERROR_RECOVERY_SERVICE = table.ROBOT_RECOVERY.name

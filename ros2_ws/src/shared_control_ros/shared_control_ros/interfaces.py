@@ -1,17 +1,16 @@
-"""Which node publishes, hears, serves and calls what: who is to be allowed what on a secured graph."""
+"""Which node publishes, subscribes to, serves and calls what: who is to be allowed what on a secured graph."""
 
 from dataclasses import dataclass
 
 from . import contract
 from .contract import Topic
 
-SET_PARAMETERS = 'panda_sim_node/set_parameters'
 DISPLAYED = (
     contract.JOINT_STATES_THROTTLE, contract.BALL, contract.HUMAN_WRENCH, contract.AGENT_WRENCH,
     contract.APPLIED_WRENCH)
-TRAINING = (
-    contract.EPISODE, contract.PHASE, contract.TIME_LEFT, contract.EPISODE_RETURN, contract.HUMAN_SHARE,
-    contract.SUCCESS)
+SIMULATOR = (contract.RESET_SERVICE, contract.PAUSE_SERVICE, contract.SEED_SERVICE)
+CONTROLLER = (
+    contract.ENABLE_SERVICE, contract.EMERGENCY_STOP_SERVICE, contract.RESET_EMERGENCY_STOP_SERVICE)
 ROBOT = (contract.JOINT_STATES, contract.JOINT_STATES_THROTTLE, contract.DIAGNOSTICS)
 
 
@@ -23,7 +22,7 @@ class Interface:
     """
 
     publishes: tuple[Topic | str, ...] = ()
-    hears: tuple[Topic | str, ...] = ()
+    subscribes: tuple[Topic | str, ...] = ()
     serves: tuple[str, ...] = ()
     calls: tuple[str, ...] = ()
 
@@ -31,43 +30,45 @@ class Interface:
 INTERFACES = {
     'panda_sim_node': Interface(
         publishes=(*ROBOT, contract.BALL, contract.CLOCK),
-        hears=(contract.EFFORT_COMMANDS, contract.DISTURBANCE),
-        serves=('~/reset', '~/pause')),
+        subscribes=(contract.EFFORT_COMMANDS, contract.DISTURBANCE),
+        serves=SIMULATOR),
     'mock_panda_node': Interface(
         publishes=(*ROBOT, contract.BALL, contract.CLOCK),
-        hears=(contract.EFFORT_COMMANDS, contract.DISTURBANCE),
-        serves=('~/reset', '~/pause', '~/error_recovery')),
+        subscribes=(contract.EFFORT_COMMANDS, contract.DISTURBANCE),
+        serves=(*SIMULATOR, contract.ERROR_RECOVERY_SERVICE)),
     'panda_bridge_node': Interface(
-        publishes=ROBOT, hears=(contract.EFFORT_COMMANDS,), serves=('~/enable', '~/error_recovery')),
+        publishes=ROBOT, subscribes=(contract.EFFORT_COMMANDS,),
+        serves=(contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE)),
     'torque_ctrl_node': Interface(
-        publishes=(contract.EFFORT_COMMANDS, contract.APPLIED_WRENCH, contract.DIAGNOSTICS),
-        hears=(contract.JOINT_STATES, contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.EMERGENCY_STOP),
-        serves=('~/enable', '~/emergency_stop', '~/reset_emergency_stop')),
+        publishes=(contract.EFFORT_COMMANDS, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
+                   contract.DIAGNOSTICS),
+        subscribes=(contract.JOINT_STATES, contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.EMERGENCY_STOP),
+        serves=CONTROLLER),
     'teleop_key_node': Interface(
         publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.DIAGNOSTICS),
-        hears=(contract.KEYS, *DISPLAYED, *TRAINING),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING),
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
     'ppo_agent_node': Interface(
-        publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *TRAINING),
-        hears=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.APPLIED_WRENCH),
-        serves=('~/finish', '~/start', '~/repeat'),
-        calls=(contract.RESET_SERVICE, contract.PAUSE_SERVICE, SET_PARAMETERS)),
+        publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
+        subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
+                    contract.APPLIED_WRENCH),
+        serves=(contract.START_SERVICE, contract.REPEAT_SERVICE, contract.FINISH_SERVICE),
+        calls=SIMULATOR),
     'sim_tutor_node': Interface(
         publishes=(contract.KEYS, contract.DIAGNOSTICS),
-        hears=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.EPISODE,
+        subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.EPISODE,
                contract.PHASE)),
     'teach_page_node': Interface(
         publishes=(contract.KEYS,),
-        hears=(contract.KEYS, *DISPLAYED, *TRAINING),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING),
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE, contract.START_SERVICE, contract.REPEAT_SERVICE)),
-    'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), hears=contract.TOPICS),
+    'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), subscribes=contract.BAG_TOPICS),
     'robot_view_node': Interface(
-        publishes=('robot_description', 'markers', '/tf', contract.DIAGNOSTICS), hears=DISPLAYED),
+        publishes=('robot_description', 'markers', '/tf', contract.DIAGNOSTICS), subscribes=DISPLAYED),
     'operator': Interface(
         publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE),
-        hears=(*contract.TOPICS, contract.JOINT_STATES_THROTTLE),
-        calls=('torque_ctrl_node/enable', 'torque_ctrl_node/emergency_stop', 'torque_ctrl_node/reset_emergency_stop',
-               'panda_bridge_node/enable', 'panda_bridge_node/error_recovery', 'mock_panda_node/error_recovery',
-               contract.RESET_SERVICE, contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
+        subscribes=contract.TOPICS,
+        calls=(*CONTROLLER, contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE, contract.RESET_SERVICE,
+               contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
 }
 """By name of the node; ``operator`` is a person with the ros2 command."""

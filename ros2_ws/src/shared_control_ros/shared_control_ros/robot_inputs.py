@@ -1,4 +1,4 @@
-"""What a robot in a simulated world hears: torques, pushes at the tray."""
+"""What a robot in a simulated world receives: torques, pushes at the tray."""
 
 import math
 
@@ -66,7 +66,7 @@ class PushInput:
         self._until = 0
 
     def update(self, tick: int) -> None:
-        """Hear a new push, or end the last one when its time is up."""
+        """Take a new push, or end the last one when its time is up."""
         message = self._input.take()
         if message is None:
             if self._until and tick >= self._until:

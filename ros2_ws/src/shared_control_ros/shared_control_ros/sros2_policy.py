@@ -15,7 +15,7 @@ from .interfaces import INTERFACES, Interface
 ENCLAVES = '/shared_control'
 OF_EVERY_NODE = Interface(
     publishes=('/rosout', '/parameter_events'),
-    hears=('/parameter_events', '/clock'),
+    subscribes=('/parameter_events', '/clock'),
     serves=tuple(f'~/{name}' for name in (
         'describe_parameters', 'get_parameter_types', 'get_parameters', 'get_type_description', 'list_parameters',
         'set_parameters', 'set_parameters_atomically')))
@@ -30,7 +30,7 @@ def policy() -> str:
         profile = ET.SubElement(ET.SubElement(enclave, 'profiles'), 'profile', ns='/', node=name)
         allowed = {
             ('topics', 'publish'): (*OF_EVERY_NODE.publishes, *interface.publishes),
-            ('topics', 'subscribe'): (*OF_EVERY_NODE.hears, *interface.hears),
+            ('topics', 'subscribe'): (*OF_EVERY_NODE.subscribes, *interface.subscribes),
             ('services', 'reply'): (*OF_EVERY_NODE.serves, *interface.serves),
             ('services', 'request'): interface.calls,
         }

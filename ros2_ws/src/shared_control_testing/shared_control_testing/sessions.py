@@ -9,32 +9,17 @@ from typing import Any
 import numpy as np
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
+from shared_control import contract
+from shared_control.contract import Topic
 from shared_control.robot.limits import DOF, JOINT_NAMES
 from shared_control.robot.model import PandaModel
 from shared_control.robot.posture import Q_REFERENCE
-from shared_control_records import topics
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 START_NS = 1_795_354_200_000_000_000
 MS = 1_000_000
-TYPES = {
-    topics.JOINT_STATES: 'sensor_msgs/msg/JointState',
-    topics.EFFORT_COMMANDS: 'std_msgs/msg/Float64MultiArray',
-    topics.KEYS: 'sensor_msgs/msg/Joy',
-    topics.HUMAN_WRENCH: 'geometry_msgs/msg/WrenchStamped',
-    topics.AGENT_WRENCH: 'geometry_msgs/msg/WrenchStamped',
-    topics.APPLIED_WRENCH: 'geometry_msgs/msg/WrenchStamped',
-    topics.BALL: 'nav_msgs/msg/Odometry',
-    topics.DISTURBANCE: 'geometry_msgs/msg/WrenchStamped',
-    topics.EMERGENCY_STOP: 'std_msgs/msg/Bool',
-    topics.DIAGNOSTICS: 'diagnostic_msgs/msg/DiagnosticArray',
-    topics.CLOCK: 'rosgraph_msgs/msg/Clock',
-    topics.EPISODE: 'std_msgs/msg/Int32',
-    topics.PHASE: 'std_msgs/msg/String',
-    topics.TIME_LEFT: 'std_msgs/msg/Float64',
-    topics.EPISODE_RETURN: 'std_msgs/msg/Float64',
-    topics.HUMAN_SHARE: 'std_msgs/msg/Float64',
-    topics.SUCCESS: 'std_msgs/msg/Float64'}
+APPLIED = (contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)
+"""What the controller publishes of the moments that it used: the sum and its parts."""
 
 
 def message(kind: str, **fields: Any) -> Any:
@@ -47,7 +32,7 @@ def stamp(ns: int) -> Any:
     return message('builtin_interfaces/msg/Time', sec=ns // 1_000_000_000, nanosec=ns % 1_000_000_000)
 
 
-def header(ns: int, frame: str = topics.BASE_FRAME) -> Any:
+def header(ns: int, frame: str = contract.BASE_FRAME) -> Any:
     """A header."""
     return message('std_msgs/msg/Header', stamp=stamp(ns), frame_id=frame)
 
@@ -57,7 +42,7 @@ def vector(x: float, y: float, z: float) -> Any:
     return message('geometry_msgs/msg/Vector3', x=float(x), y=float(y), z=float(z))
 
 
-def wrench(ns: int, m_y: float, frame: str = topics.BASE_FRAME) -> Any:
+def wrench(ns: int, m_y: float, frame: str = contract.BASE_FRAME) -> Any:
     """A moment."""
     return message('geometry_msgs/msg/WrenchStamped', header=header(ns, frame), wrench=message(
         'geometry_msgs/msg/Wrench', force=vector(0, 0, 0), torque=vector(0, m_y, 0)))
@@ -125,29 +110,29 @@ def lesson(steps: int = 100, seed: int = 0) -> Lesson:
 class Recording:
     """What a bag holds: (topic, received ns, message), changed by tests before it is written."""
 
-    messages: list[tuple[str, int, Any]] = field(default_factory=list)
+    messages: list[tuple[Topic, int, Any]] = field(default_factory=list)
 
-    def add(self, topic: str, received_ns: int, content: Any) -> None:
+    def add(self, topic: Topic, received_ns: int, content: Any) -> None:
         """One more message."""
         self.messages.append((topic, received_ns, content))
 
-    def drop(self, topic: str, first: int, count: int) -> None:
+    def drop(self, topic: Topic, first: int, count: int) -> None:
         """Forget some messages of a topic."""
         indices = [i for i, entry in enumerate(self.messages) if entry[0] == topic][first:first + count]
         self.messages = [entry for i, entry in enumerate(self.messages) if i not in set(indices)]
 
-    def of(self, topic: str) -> list[Any]:
+    def of(self, topic: Topic) -> list[Any]:
         """The messages of a topic."""
-        return [content for name, _, content in self.messages if name == topic]
+        return [content for sent_on, _, content in self.messages if sent_on == topic]
 
-    def write(self, path: Path, without: tuple[str, ...] = ()) -> Path:
+    def write(self, path: Path, without: tuple[Topic, ...] = ()) -> Path:
         """Write the bag."""
         with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-            connections = {topic: writer.add_connection(topic, kind, typestore=STORE)
-                           for topic, kind in TYPES.items() if topic not in without}
+            connections = {topic: writer.add_connection(topic.full_name, topic.type, typestore=STORE)
+                           for topic in contract.BAG_TOPICS if topic not in without}
             for topic, received_ns, content in sorted(self.messages, key=lambda entry: entry[1]):
                 if topic not in without:
-                    writer.write(connections[topic], received_ns, STORE.serialize_cdr(content, TYPES[topic]))
+                    writer.write(connections[topic], received_ns, STORE.serialize_cdr(content, topic.type))
         return path
 
 
@@ -161,45 +146,45 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
     tray_x = float(PandaModel().tray_pose(Q_REFERENCE)[0][0])
     effort = np.full(DOF, 7.0)
     tick = 0
-    agent, human, applied = 0.0, 0.0, 0.0
+    agent, human, used = 0.0, 0.0, (0.0, 0.0, 0.0)
     ticks = sum(20 * len(one.position_error) for one in lessons)
     for number, one in enumerate(lessons, start=1):
         at = start_ns + tick * MS
-        recording.add(topics.EPISODE, at, message(TYPES[topics.EPISODE], data=number))
-        recording.add(topics.PHASE, at, message(TYPES[topics.PHASE], data='teach'))
+        recording.add(contract.EPISODE, at, message(contract.EPISODE.type, data=number))
+        recording.add(contract.PHASE, at, message(contract.PHASE.type, data='teach'))
         for own_tick in range(20 * len(one.position_error)):
             at = start_ns + tick * MS
             step, phase = divmod(own_tick, 20)
             if phase == 0:
                 sent = at + delay_ms * MS
-                recording.add(topics.AGENT_WRENCH, sent, wrench(at, one.m_y_agent[step]))
-                recording.add(topics.HUMAN_WRENCH, sent, wrench(at, one.m_y_human[step]))
+                recording.add(contract.AGENT_WRENCH, sent, wrench(at, one.m_y_agent[step]))
+                recording.add(contract.HUMAN_WRENCH, sent, wrench(at, one.m_y_human[step]))
             if phase == delay_ms + 1:
                 agent, human = one.m_y_agent[step], one.m_y_human[step]
             if tick % 10 == 0:
-                recording.add(topics.CLOCK, at, message(TYPES[topics.CLOCK], clock=stamp(at)))
-                recording.add(topics.BALL, at + 1000, ball(at, tray_x - one.position_error[step]))
+                recording.add(contract.CLOCK, at, message(contract.CLOCK.type, clock=stamp(at)))
+                recording.add(contract.BALL, at + 1000, ball(at, tray_x - one.position_error[step]))
             velocity = np.full(DOF, 0.0 if own_tick == 0 else 0.01)
-            recording.add(topics.JOINT_STATES, at + 10, joint_state(at, Q_REFERENCE, velocity, effort))
-            total = min(max(agent + human, -20.0), 20.0)
+            recording.add(contract.JOINT_STATES, at + 10, joint_state(at, Q_REFERENCE, velocity, effort))
             effort = np.full(DOF, 7.0) + tick * 1e-6
-            recording.add(topics.EFFORT_COMMANDS, at + 500_000, command(effort))
-            if total != applied or tick % 10 == 0:
-                applied = total
-                recording.add(topics.APPLIED_WRENCH, at + 600_000, wrench(at, total))
+            recording.add(contract.EFFORT_COMMANDS, at + 500_000, command(effort))
+            before, used = used, (min(max(agent + human, -20.0), 20.0), human, agent)
+            if used != before or tick % 10 == 0:
+                for topic, moment in zip(APPLIED, used, strict=True):
+                    recording.add(topic, at + 600_000, wrench(at, moment))
             if tick % 100 == 0:
-                recording.add(topics.KEYS, at, keys(at, 'tutor', (int(tick % 200 == 0), 0, 0)))
+                recording.add(contract.KEYS, at, keys(at, 'tutor', (int(tick % 200 == 0), 0, 0)))
             if tick % 1000 == 999 or tick == ticks - 1:
-                recording.add(topics.DIAGNOSTICS, at, simulator_status(at, tick + 1))
+                recording.add(contract.DIAGNOSTICS, at, simulator_status(at, tick + 1))
             tick += 1
-        recording.add(topics.EPISODE_RETURN, at + 900_000,
-                      message(TYPES[topics.EPISODE_RETURN], data=one.episode_return))
+        recording.add(contract.EPISODE_RETURN, at + 900_000,
+                      message(contract.EPISODE_RETURN.type, data=one.episode_return))
     return recording
 
 
-def simulator_status(ns: int, ticks: int) -> Any:
-    """What panda_sim_node says of itself."""
-    return status(ns, 'panda_sim_node', ticks=ticks, tick_p50_ms='0.61', tick_p99_ms='0.93', late_ticks=ticks // 100,
+def simulator_status(ns: int, ticks: int, node: str = 'panda_sim_node') -> Any:
+    """What a simulator reports of itself."""
+    return status(ns, node, ticks=ticks, tick_p50_ms='0.61', tick_p99_ms='0.93', late_ticks=ticks // 100,
                   running_seconds=f'{ticks * 1.001e-3:.3f}', simulated_seconds=f'{ticks * 1e-3:.3f}')
 
 

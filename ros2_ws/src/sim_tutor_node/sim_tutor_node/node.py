@@ -7,6 +7,7 @@ person: it sees late and inexactly, and presses keys. In any phase but ``teach``
 import math
 
 import numpy as np
+from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
@@ -21,6 +22,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
 from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.wrenches import moment_of
 
 from .key_publisher import KeyPublisher
 
@@ -62,7 +64,7 @@ class SimTutorNode:
                 self._background.poll()
                 self._diagnostics.publish({}, phase=self._lesson.phase or '', presses=self._keys.presses)
 
-    def _watch(self, ball: contract.Odometry) -> None:
+    def _watch(self, ball: Odometry) -> None:
         """One look at the tray."""
         self._diagnostics.tick()
         self._follow_lesson(to_ns(ball.header.stamp))
@@ -72,10 +74,10 @@ class SimTutorNode:
             except ValueError as error:
                 self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:
-            if math.isfinite(wrench.wrench.torque.y):
-                self._m_y_human = wrench.wrench.torque.y
-            else:
-                self._complain(self._human, f'torque.y is {wrench.wrench.torque.y}')
+            try:
+                self._m_y_human = float(moment_of(wrench)[0])
+            except ValueError as error:
+                self._complain(self._human, str(error))
         if self._lesson.phase != 'teach' or self._q is None:
             return
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear

@@ -1,9 +1,9 @@
 """A recorded session as pictures."""
 
 import numpy as np
+from shared_control import contract
 from shared_control.keys import BUTTONS
 from shared_control.robot.model import PandaModel, pitch
-from shared_control_records import topics
 from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series, Wrenches
 
@@ -14,7 +14,7 @@ from .picture import Picture
 LONGEST_STILL = 2.0
 """Of a longer gap in the recording (between two runs of a session) as much is played, s."""
 STALE_AFTER = 0.2
-"""A moment that is older has ended, s."""
+"""The controller repeats its moments; it was not there when they are older, s of the recorder's clock."""
 
 
 class Recording:
@@ -51,12 +51,13 @@ class Recording:
         training = self._bag.training
         return Picture(
             q=q, ball=ball, ball_on_tray=rotation.T @ (ball - origin), pitch=pitch(rotation),
-            m_y_human=_moment(self._bag.human, now_ns), m_y_agent=_moment(self._bag.agent, now_ns),
+            m_y_human=_moment(self._bag.human_applied, now_ns),
+            m_y_agent=_moment(self._bag.agent_applied, now_ns),
             m_y_applied=_moment(self._bag.applied, now_ns),
-            phase=_latest(training[topics.PHASE], now_ns), episode=_latest(training[topics.EPISODE], now_ns),
-            time_left=_latest(training[topics.TIME_LEFT], now_ns),
-            human_share=_latest(training[topics.HUMAN_SHARE], now_ns),
-            success=_latest(training[topics.SUCCESS], now_ns), keys=keys, hand=hand, time=seconds,
+            phase=_latest(training[contract.PHASE], now_ns), episode=_latest(training[contract.EPISODE], now_ns),
+            time_left=_latest(training[contract.TIME_LEFT], now_ns),
+            human_share=_latest(training[contract.HUMAN_SHARE], now_ns),
+            success=_latest(training[contract.SUCCESS], now_ns), keys=keys, hand=hand, time=seconds,
             history=self._history(now_ns))
 
     def _keys(self, now_ns: int) -> tuple[list[int], str]:
@@ -72,12 +73,12 @@ class Recording:
 
     def _history(self, now_ns: int) -> History:
         history = History()
-        returns = self._bag.training[topics.EPISODE_RETURN]
+        returns = self._bag.training[contract.EPISODE_RETURN]
         for at_ns, value in zip(returns.received_ns, returns.values, strict=True):
             if at_ns > now_ns:
                 break
-            if _latest(self._bag.training[topics.PHASE], int(at_ns)) not in ('test', 'done'):
-                history.add(float(value), _latest(self._bag.training[topics.HUMAN_SHARE], int(at_ns)))
+            if _latest(self._bag.training[contract.PHASE], int(at_ns)) not in ('test', 'done'):
+                history.add(float(value), _latest(self._bag.training[contract.HUMAN_SHARE], int(at_ns)))
         return history
 
 

@@ -1,6 +1,7 @@
 """A recorded session, moment by moment."""
 
 import pytest
+from shared_control import contract
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_testing.sessions import lesson, record
 from teach_page_node.recording import Recording
@@ -48,7 +49,7 @@ def test_a_gap_between_two_runs_is_shortened(tmp_path):
 
 
 def test_a_bag_without_a_ball_is_refused(tmp_path):
-    path = record([lesson()]).write(tmp_path / 'bag', without=('/ball',))
+    path = record([lesson()]).write(tmp_path / 'bag', without=(contract.BALL,))
     with pytest.raises(BagReadError, match='nothing to see'):
         Recording(read_bag(path))
 

@@ -4,7 +4,7 @@ With a terminal it reads the keys there as well and shows the lesson: arrows or 
 q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves the ball to the left of the picture.
 """
 
-from geometry_msgs.msg import WrenchStamped
+import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
 from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
@@ -15,6 +15,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.wrenches import base_wrench, set_moment
 
 from .panel import Panel
 from .sources import KeySources
@@ -51,8 +52,7 @@ class TeleopKeyNode:
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
         self._sources = KeySources(KeyMoment(step=keystroke, limit=self._moment_limit), self._timeout)
-        self._wrench = WrenchStamped()
-        self._wrench.header.frame_id = contract.BASE_FRAME
+        self._wrench = base_wrench()
         self._publisher = node.create_publisher(
             contract.HUMAN_WRENCH.msg_type, contract.HUMAN_WRENCH.name, contract.HUMAN_WRENCH.qos)
         self._diagnostics = Diagnostics(node, 1.0 / self._rate)
@@ -132,7 +132,7 @@ class TeleopKeyNode:
 
     def _publish(self, m_y: float, now_ns: int) -> None:
         set_ns(self._wrench.header.stamp, now_ns)
-        self._wrench.wrench.torque.y = m_y
+        set_moment(self._wrench, np.array([m_y]))
         self._publisher.publish(self._wrench)
 
     def _report(self) -> None:

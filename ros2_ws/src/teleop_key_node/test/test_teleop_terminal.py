@@ -103,7 +103,7 @@ def test_the_screen_shows_the_lesson(graph, start_in_terminal):
 def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
     terminal = start_in_terminal()
     terminal.type(b'q')
-    terminal.expect('Nobody serves /ppo_agent_node/finish')
+    terminal.expect('Nobody serves /learner/finish')
     asked = []
 
     def on_finish(_, response):

@@ -13,7 +13,7 @@ from shared_control.robot.limits import JOINT_NAMES
 from shared_control.robot.model import PandaModel
 from shared_control.robot.posture import Q_REFERENCE
 from shared_control_ros import contract
-from shared_control_ros.stamps import set_ns
+from shared_control_ros.stamps import set_ns, to_ns
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 
@@ -28,6 +28,7 @@ class Robot:
         self.observer = observer
         self.commands = observer.listen(contract.EFFORT_COMMANDS)
         self.applied = observer.listen(contract.APPLIED_WRENCH)
+        self.parts = [observer.listen(contract.HUMAN_APPLIED), observer.listen(contract.AGENT_APPLIED)]
         self.states = observer.publisher(contract.JOINT_STATES)
         self.human = observer.publisher(contract.HUMAN_WRENCH)
         self.agent = observer.publisher(contract.AGENT_WRENCH)
@@ -78,6 +79,13 @@ class Robot:
         publisher.publish(message)
         time.sleep(0.05)
 
+    def used(self):
+        """The sum at this tick and its parts, human and agent, as published, N m."""
+        messages = (self.applied, *self.parts)
+        self.observer.spin(lambda: all(m and to_ns(m[-1].header.stamp) == self.now_ns for m in messages))
+        assert {m[-1].header.frame_id for m in messages} == {contract.BASE_FRAME}
+        return [m[-1].wrench.torque.y for m in messages]
+
     def moment(self):
         """M_y that the torque of the next tick contains, N m."""
         lever = MODEL.jacobian(Q_REFERENCE)[4]
@@ -110,13 +118,24 @@ class TestRunningController:
         robot.send(robot.human, 0.5)
         robot.send(robot.agent, -0.2)
         np.testing.assert_array_equal(robot.tick(), expected(0.3))
-        robot.observer.spin(lambda: robot.applied[-1].wrench.torque.y == pytest.approx(0.3))
+        assert robot.used() == [-0.2 + 0.5, 0.5, -0.2]
+
+    def test_unchanged_moments_are_published_every_ten_ticks(self, robot):
+        robot.tick()
+        begin_ns = robot.now_ns
+        for _ in range(30):
+            robot.tick()
+        robot.observer.spin_for(0.1)
+        total, human, agent = (
+            [stamp for message in messages if (stamp := to_ns(message.header.stamp)) > begin_ns]
+            for messages in (robot.applied, *robot.parts))
+        assert total == human == agent and 3 <= len(total) <= 4
 
     def test_the_sum_and_the_torque_rate_are_limited(self, robot):
         robot.send(robot.human, 1e6)
         torque = robot.tick()
         assert np.abs(torque - GRAVITY).max() <= 1.0 + 1e-12
-        robot.observer.spin(lambda: robot.applied[-1].wrench.torque.y == 20.0)
+        assert robot.used() == [20.0, 1e6, 0.0], 'the parts are those before the limit'
 
     def test_a_silent_source_fades_to_nothing(self, robot):
         robot.send(robot.human, 0.5)
@@ -124,8 +143,18 @@ class TestRunningController:
         assert full > 0.1
         robot.now_ns += 140_000_000
         assert 0.0 < robot.moment() < full
+        total, human, agent = robot.used()
+        assert 0.0 < human < 0.5 and (total, agent) == (human, 0.0)
         robot.now_ns += 200_000_000
         assert robot.moment() == pytest.approx(0.0, abs=1e-9)
+        assert robot.used() == [0.0, 0.0, 0.0]
+
+    def test_a_moment_counts_no_longer_when_time_is_set_back(self, robot):
+        robot.send(robot.human, 0.5)
+        np.testing.assert_array_equal(robot.tick(), expected(0.5))
+        robot.now_ns -= 500_000_000
+        np.testing.assert_array_equal(robot.tick(), expected(0.0))
+        assert robot.used() == [0.0, 0.0, 0.0]
 
     @pytest.mark.parametrize(('fault', 'said'), [
         ({'m_y': float('nan')}, 'torque.y is nan'),
@@ -183,7 +212,7 @@ class TestSafety:
     """A controller that nobody has enabled, from one state to the next."""
 
     def ask(self, robot, service, request=None):
-        return robot.observer.call(type_of(request), f'torque_ctrl_node/{service}', request or Trigger.Request())
+        return robot.observer.call(type_of(request), f'controller/{service}', request or Trigger.Request())
 
     def answers(self, robot, ticks=3, **state):
         """The torques that answer some ticks."""
@@ -208,7 +237,7 @@ class TestSafety:
         return self.ask(robot, 'enable', SetBool.Request(data=True))
 
     def test_starts_disabled_and_says_how_to_go_on(self, disabled, robot_at_rest):
-        disabled.wait_for_log('disabled: /torque_ctrl_node/enable to go on')
+        disabled.wait_for_log('disabled: /controller/enable to go on')
         assert self.answers(robot_at_rest) == []
 
     def test_is_not_enabled_far_from_the_reference(self, robot_at_rest):

@@ -1,14 +1,14 @@
 """1 kHz computed-torque controller: answers every /joint_states with joint torques.
 
 Sums the moments of human and agent, turns them into a wrench at the tray, and publishes
-``tau_pd + J^T W_tr + tau_g`` on /effort_controller/commands and the applied moment on /target_wrench.
+``tau_pd + J^T W_tr + tau_g`` on /effort_controller/commands, the applied moment on /target_wrench and its parts on
+/human/applied_wrench and /agent/applied_wrench.
 """
 
 import gc
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
@@ -23,16 +23,16 @@ from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
-from shared_control_ros.stamps import set_ns
 from shared_control_ros.wire import WireLayout
 from std_msgs.msg import Float64MultiArray
 
+from .applied_moments import AppliedMoments
 from .joint_states import JointStateReader
 from .safety import Safety
 from .wrench_input import WrenchInput
 
 TICKS_PER_POLL = 10
-"""How often services are looked at and an unchanged moment is published again."""
+"""How often services are looked at and unchanged moments are published again."""
 
 
 class TorqueCtrlNode:
@@ -55,7 +55,8 @@ class TorqueCtrlNode:
             node, 'wait_for', ['none'], 'Sources to wait for at every policy tick, for results that do not depend '
             'on timing.', choices=('none', 'human', 'agent'))
         enabled = declare(
-            node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls ~/enable.')
+            node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls '
+            'controller/enable.')
 
         self._controller = ComputedTorqueController(
             PandaModel(), gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon, robot_compensates_gravity=compensates)
@@ -70,12 +71,9 @@ class TorqueCtrlNode:
         command = Float64MultiArray(data=[0.0] * DOF)
         self._command = bytearray(serialize_message(command))
         self._torque, = WireLayout(command, ('data',)).views(self._command)
-        self._applied = WrenchStamped()
-        self._applied.header.frame_id = contract.BASE_FRAME
         self._command_publisher = node.create_publisher(
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
-        self._applied_publisher = node.create_publisher(
-            contract.APPLIED_WRENCH.msg_type, contract.APPLIED_WRENCH.name, contract.APPLIED_WRENCH.qos)
+        self._applied = AppliedMoments(node)
         self._safety = Safety(node, enabled, self._report)
 
         if not enabled:
@@ -134,16 +132,13 @@ class TorqueCtrlNode:
                 return
         self._human.update(now_ns)
         self._agent.update(now_ns)
-        moment = sum_moments(self._agent.moment(now_ns), self._human.moment(now_ns), self._moment_limit)
-        self._torque[:] = self._controller.torque(q, qd, effort, moment)
+        human, agent = self._human.moment(now_ns), self._agent.moment(now_ns)
+        applied = sum_moments(agent, human, self._moment_limit)
+        self._torque[:] = self._controller.torque(q, qd, effort, applied)
         self._command_publisher.publish(bytes(self._command))
         self._answered_ns = now_ns
         self._diagnostics.tick()
-        applied, m_y = self._applied, float(moment[0])
-        if m_y != applied.wrench.torque.y or self._ticks % TICKS_PER_POLL == 0:
-            set_ns(applied.header.stamp, now_ns)
-            applied.wrench.torque.y = m_y
-            self._applied_publisher.publish(applied)
+        self._applied.publish(now_ns, applied, human, agent, self._ticks % TICKS_PER_POLL == 0)
 
     def _stand_by(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> None:
         """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""
@@ -170,7 +165,7 @@ class TorqueCtrlNode:
             problems[self._command_publisher.topic_name] = problem
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if self._safety.is_stopped else None, enabled=self._safety.enabled,
-            emergency_stop=self._safety.is_stopped, m_y=self._applied.wrench.torque.y)
+            emergency_stop=self._safety.is_stopped, m_y=self._applied.m_y)
 
     def close(self) -> None:
         """Nothing to undo: the robot stops applying what it no longer receives."""

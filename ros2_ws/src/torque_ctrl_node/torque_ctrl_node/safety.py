@@ -28,8 +28,8 @@ class Safety:
     controller is disabled. Whenever the torques are to end, the arm is first brought to rest.
 
     Args:
-        node: the controller's node; serves ``~/enable``, ``~/emergency_stop``, ``~/reset_emergency_stop`` and hears
-            ``emergency_stop``.
+        node: the controller's node; serves ``controller/enable``, ``controller/emergency_stop`` and
+            ``controller/reset_emergency_stop``, and subscribes to ``emergency_stop``.
         enabled: from the start.
         on_change: called after each change.
     """
@@ -45,12 +45,12 @@ class Safety:
         self._q_seen = -math.inf
         self.is_stopped = False
         """Whether the emergency stop is on."""
-        name = node.get_fully_qualified_name()
-        self._enable_name, self._reset_name = f'{name}/enable', f'{name}/reset_emergency_stop'
+        self._enable_name = node.resolve_service_name(contract.ENABLE_SERVICE)
+        self._reset_name = node.resolve_service_name(contract.RESET_EMERGENCY_STOP_SERVICE)
         self._stop_messages = Polled(node, contract.EMERGENCY_STOP, depth=contract.EMERGENCY_STOP.qos.depth)
-        node.create_service(SetBool, '~/enable', self._on_enable)
-        node.create_service(Trigger, '~/emergency_stop', self._on_stop_request)
-        node.create_service(Trigger, '~/reset_emergency_stop', self._on_reset)
+        node.create_service(SetBool, contract.ENABLE_SERVICE, self._on_enable)
+        node.create_service(Trigger, contract.EMERGENCY_STOP_SERVICE, self._on_stop_request)
+        node.create_service(Trigger, contract.RESET_EMERGENCY_STOP_SERVICE, self._on_reset)
 
     @property
     def problem(self) -> str:

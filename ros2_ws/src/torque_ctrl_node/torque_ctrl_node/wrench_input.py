@@ -1,14 +1,14 @@
 """The moment that one source (human or agent) asks for, as the controller takes it."""
 
-import math
 import time
 
 import numpy as np
 from rclpy.node import Node
 from shared_control.control.moments import MomentSource
-from shared_control_ros.contract import BASE_FRAME, Topic
+from shared_control_ros.contract import Topic
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.wrenches import moment_of
 
 
 class WrenchInput:
@@ -32,26 +32,21 @@ class WrenchInput:
         message = self._input.take()
         if message is None:
             return
-        m_y = message.wrench.torque.y
-        stamp_ns = to_ns(message.header.stamp)
-        fault = self._fault(message.header.frame_id, m_y, (now_ns - stamp_ns) * 1e-9)
-        if fault:
+        try:
+            moment, stamp_ns = moment_of(message), to_ns(message.header.stamp)
+            self._check_age((now_ns - stamp_ns) * 1e-9)
+        except ValueError as error:
             self._node.get_logger().error(
-                f'dropped a message on {self.topic_name}: {fault}', throttle_duration_sec=1.0)
+                f'dropped a message on {self.topic_name}: {error}', throttle_duration_sec=1.0)
             return
-        self._source.moment = np.array([m_y])
-        self._source.stamp_ns = stamp_ns
+        self._source.moment, self._source.stamp_ns = moment, stamp_ns
 
-    def _fault(self, frame: str, m_y: float, age: float) -> str:
-        if frame != BASE_FRAME:
-            return f'frame_id is {frame!r}, expected {BASE_FRAME!r}'
-        if not math.isfinite(m_y):
-            return f'torque.y is {m_y}'
+    def _check_age(self, age: float) -> None:
         if age > self._timeout:
-            return f'its stamp is {age:.3f} s old, more than command_timeout ({self._timeout} s)'
+            raise ValueError(f'its stamp is {age:.3f} s old, more than command_timeout ({self._timeout} s)')
         if age < -self._timeout:
-            return f'its stamp is {-age:.3f} s ahead of /joint_states: do both use the same clock (use_sim_time)?'
-        return ''
+            raise ValueError(
+                f'its stamp is {-age:.3f} s ahead of /joint_states: do both use the same clock (use_sim_time)?')
 
     def moment(self, now_ns: int) -> np.ndarray:
         """The moment that counts at ``now_ns``, (1,), N m."""
@@ -61,14 +56,15 @@ class WrenchInput:
         """What is wrong with this source, for the diagnostics; empty when nothing is."""
         if not self._source.stamp_ns:
             return 'nothing received yet'
-        if not self._source.is_stale(now_ns, self._timeout):
-            return ''
-        return f'silent for {(now_ns - self._source.stamp_ns) * 1e-9:.2f} s'
+        age = self._source.age(now_ns)
+        if age > self._timeout:
+            return f'silent for {age:.2f} s'
+        return f'its last stamp is {-age:.2f} s ahead' if age < -self._timeout else ''
 
     def wait_for_stamp(self, stamp_ns: int, timeout: float) -> bool:
-        """Wait up to ``timeout`` s for a wrench as new as ``stamp_ns``; say whether one came."""
+        """Wait up to ``timeout`` s for a wrench as new as ``stamp_ns``; whether one came."""
         deadline = time.monotonic() + timeout
-        while self._source.stamp_ns < stamp_ns:
+        while not -self._timeout <= self._source.age(stamp_ns) <= 0.0:
             if time.monotonic() > deadline:
                 return False
             self._input.wait_ready(0.01)

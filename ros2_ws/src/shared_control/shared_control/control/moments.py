@@ -10,7 +10,11 @@ def freshness(age: float, timeout: float) -> float:
     """The part of a command of a given age (s) that still counts.
 
     1 up to ``timeout`` (s), then falling to 0 within ``FADE_TIME``: a source that vanishes neither latches nor jerks.
+    0 for a command whose stamp is further ahead than ``timeout``: time has been set back, and the source has not sent
+    anything since.
     """
+    if age < -timeout:
+        return 0.0
     return min(max(1.0 - (age - timeout) / FADE_TIME, 0.0), 1.0)
 
 
@@ -31,10 +35,10 @@ class MomentSource:
         """(k,), N m"""
         self.stamp_ns = 0
 
-    def at(self, now_ns: int, timeout: float) -> np.ndarray:
-        """The moment that counts at ``now_ns``, (k,), N m: zero when none came for ``timeout`` seconds and more."""
-        return self.moment * freshness((now_ns - self.stamp_ns) * 1e-9, timeout)
+    def age(self, now_ns: int) -> float:
+        """How old it is at ``now_ns``, s; negative when its stamp is ahead."""
+        return (now_ns - self.stamp_ns) * 1e-9
 
-    def is_stale(self, now_ns: int, timeout: float) -> bool:
-        """Whether the last message is older than ``timeout`` seconds."""
-        return (now_ns - self.stamp_ns) * 1e-9 > timeout
+    def at(self, now_ns: int, timeout: float) -> np.ndarray:
+        """The moment that counts at ``now_ns``, (k,), N m: see :func:`freshness`."""
+        return self.moment * freshness(self.age(now_ns), timeout)

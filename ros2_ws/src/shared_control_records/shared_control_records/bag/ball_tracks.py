@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
+from shared_control import contract
 from shared_control.robot.model import PandaModel
 
-from .. import topics
 from .reader import Bag
 
 _JUMP = 0.03
@@ -33,7 +33,7 @@ class EpisodeTrack:
 
 def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
     """The finished episodes of a bag in their order. One that was broken off, and began again, is left out."""
-    starts, ends = bag.training[topics.EPISODE], bag.training[topics.EPISODE_RETURN]
+    starts, ends = bag.training[contract.EPISODE], bag.training[contract.EPISODE_RETURN]
     error = _position_error(bag)
     tracks = []
     for index, (start_ns, number) in enumerate(zip(starts.received_ns, starts.values, strict=True)):
@@ -70,6 +70,6 @@ def _after_drop(x: np.ndarray) -> int:
 
 
 def _phase(bag: Bag, received_ns: int) -> str:
-    phases = bag.training[topics.PHASE]
+    phases = bag.training[contract.PHASE]
     index = int(np.searchsorted(phases.received_ns, received_ns, 'right')) - 1
     return str(phases.values[index]) if index >= 0 else ''

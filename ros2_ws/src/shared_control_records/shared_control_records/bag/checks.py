@@ -1,13 +1,13 @@
 """Whether a bag is what it should be: complete, without gaps, and with M_y = M_yai + M_yh throughout."""
 
 from collections.abc import Iterable, Iterator
+from functools import reduce
 
 import numpy as np
+from shared_control import contract
 
-from .. import topics
-from .moment_check import find_mismatches
 from .reader import Bag
-from .recorded import JointStates
+from .recorded import JointStates, Wrenches
 from .timing import simulator_runs
 
 TICK_NS = 1_000_000
@@ -16,22 +16,26 @@ APPLIED_EVERY = 20
 """Ticks; the applied moment is published every ten, or at the next chance after that."""
 AT_START = 2
 """Ticks or commands that may lack their counterpart where the recording begins."""
-NEVER_SILENT = (topics.JOINT_STATES, topics.EFFORT_COMMANDS, topics.HUMAN_WRENCH, topics.AGENT_WRENCH,
-                topics.APPLIED_WRENCH, topics.BALL, topics.DIAGNOSTICS, topics.CLOCK)
-"""Topics on which something is said in every session."""
+JOINT_STATES = contract.JOINT_STATES.full_name
+EFFORT_COMMANDS = contract.EFFORT_COMMANDS.full_name
+APPLIED_WRENCH = contract.APPLIED_WRENCH.full_name
+NEVER_SILENT = tuple(topic.full_name for topic in (
+    contract.JOINT_STATES, contract.EFFORT_COMMANDS, contract.HUMAN_WRENCH, contract.AGENT_WRENCH,
+    contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.BALL, contract.DIAGNOSTICS,
+    contract.CLOCK))
+"""Topics that have messages in every session."""
+EXPECTED = tuple(topic.full_name for topic in contract.BAG_TOPICS)
 
 
-def check_bag(bag: Bag, expected: Iterable[str] = topics.TOPICS, moment_limit: float = 20.0,
-              command_timeout: float = 0.1) -> list[str]:
+def check_bag(bag: Bag, expected: Iterable[str] = EXPECTED, moment_limit: float = 20.0) -> list[str]:
     """What is wrong with a bag, in words; nothing when it is fine.
 
     Args:
         expected: the topics that it should have.
         moment_limit: the controller's parameter, N m.
-        command_timeout: the controller's parameter, s.
     """
     return [*_check_topics(bag, expected), *_check_joint_states(bag), *_check_commands(bag),
-            *_check_applied(bag), *_check_sums(bag, moment_limit, command_timeout)]
+            *_check_applied(bag), *_check_sums(bag, moment_limit)]
 
 
 def _check_topics(bag: Bag, expected: Iterable[str]) -> Iterator[str]:
@@ -54,7 +58,7 @@ def _check_joint_states(bag: Bag) -> Iterator[str]:
     if len(gaps):
         missing = (joints.stamp_ns[gaps] - joints.stamp_ns[gaps - 1]) / TICK_NS - 1
         lost = f'{missing.sum():.0f} ticks missing' if (missing > 0).all() else 'time runs backwards'
-        yield (f'{topics.JOINT_STATES}: {_count(len(gaps), "gap")}, {lost}; '
+        yield (f'{JOINT_STATES}: {_count(len(gaps), "gap")}, {lost}; '
                f'the first after {_seconds(bag, joints.received_ns[gaps[0] - 1])}')
 
 
@@ -73,13 +77,13 @@ def _check_commands(bag: Bag) -> Iterator[str]:
     answers = int((commands.received_ns >= both_ns).sum())
     repetitions = int((~new).sum())
     if not -repetitions - AT_START <= ticks - answers <= AT_START + _restarts(bag):
-        yield (f'{topics.EFFORT_COMMANDS}: {answers} commands for {ticks} ticks of '
-               f'{topics.JOINT_STATES}')
+        yield (f'{EFFORT_COMMANDS}: {answers} commands for {ticks} ticks of '
+               f'{JOINT_STATES}')
     commanded = set(map(bytes, commands.torque + 0.0))  # + 0.0 makes -0.0 the same as 0.0
     applied = joints.effort + 0.0
     strange = [tick for tick in np.flatnonzero(~_is_reset(joints)) if bytes(applied[tick]) not in commanded]
     if strange:
-        yield (f'{topics.EFFORT_COMMANDS}: {_count(len(strange), "tick")} with a torque that was not commanded; '
+        yield (f'{EFFORT_COMMANDS}: {_count(len(strange), "tick")} with a torque that was not commanded; '
                f'the first after {_seconds(bag, joints.received_ns[strange[0]])}')
 
 
@@ -89,21 +93,33 @@ def _is_reset(joints: JointStates) -> np.ndarray:
 
 
 def _check_applied(bag: Bag) -> Iterator[str]:
-    stamps = bag.applied.stamp_ns
-    gaps = np.flatnonzero(np.diff(stamps) > APPLIED_EVERY * TICK_NS)
     known_jumps = _restarts(bag)
-    if len(gaps) > known_jumps:
-        yield (f'{topics.APPLIED_WRENCH}: {_count(len(gaps) - known_jumps, "time")} nothing for more than '
-               f'{APPLIED_EVERY} ticks; the first after {_seconds(bag, bag.applied.received_ns[gaps[0]])}')
+    for topic, wrenches in ((contract.APPLIED_WRENCH, bag.applied), (contract.HUMAN_APPLIED, bag.human_applied),
+                            (contract.AGENT_APPLIED, bag.agent_applied)):
+        gaps = np.flatnonzero(np.diff(wrenches.stamp_ns) > APPLIED_EVERY * TICK_NS)
+        if len(gaps) > known_jumps:
+            yield (f'{topic.full_name}: {_count(len(gaps) - known_jumps, "time")} nothing for more than '
+                   f'{APPLIED_EVERY} ticks; the first after {_seconds(bag, wrenches.received_ns[gaps[0]])}')
 
 
-def _check_sums(bag: Bag, moment_limit: float, command_timeout: float) -> Iterator[str]:
-    mismatches = find_mismatches(bag, moment_limit, command_timeout)
-    first = next(mismatches, None)
-    if first is not None:
-        count = 1 + sum(1 for _ in mismatches)
-        yield (f'{topics.APPLIED_WRENCH}: M_y is not M_yai + M_yh at {_count(count, "tick")}; the first after '
-               f'{_seconds(bag, first.received_ns)}: {first.m_y:.4f} N m applied, {first.nearest:.4f} N m asked for')
+def _check_sums(bag: Bag, moment_limit: float) -> Iterator[str]:
+    """The controller publishes a sum and its parts with one stamp, so they must agree to the last bit."""
+    of_topics = [_by_stamp(wrenches) for wrenches in (bag.applied, bag.human_applied, bag.agent_applied)]
+    common = reduce(np.intersect1d, (stamps for stamps, _ in of_topics))
+    m_y, human, agent = (moments[np.searchsorted(stamps, common)] for stamps, moments in of_topics)
+    sums = np.clip(agent + human, -moment_limit, moment_limit)
+    wrong = np.flatnonzero(m_y != sums)
+    if len(wrong):
+        first = wrong[0]
+        received_ns = bag.applied.received_ns[np.flatnonzero(bag.applied.stamp_ns == common[first])[-1]]
+        yield (f'{APPLIED_WRENCH}: M_y is not M_yai + M_yh at {_count(len(wrong), "tick")}; the first after '
+               f'{_seconds(bag, received_ns)}: {m_y[first]:.4f} N m applied, {sums[first]:.4f} N m of its parts')
+
+
+def _by_stamp(wrenches: Wrenches) -> tuple[np.ndarray, np.ndarray]:
+    """Stamps, rising, and the moment of each: of a tick that was answered again, the last one."""
+    stamps, last = np.unique(wrenches.stamp_ns[::-1], return_index=True)
+    return stamps, wrenches.m_y[::-1][last]
 
 
 def _restarts(bag: Bag) -> int:

@@ -26,6 +26,11 @@ def joint_state_layout(size: int) -> np.dtype:
                           'effort': (size - 56, '<f8', 7)})
 
 
+def wrench_layout(size: int) -> np.dtype:
+    """Stamp at the start, force and torque at the end."""
+    return _layout(size, {'stamp': (4, '<i4', 2), 'force': (size - 48, '<f8', 3), 'torque': (size - 24, '<f8', 3)})
+
+
 def command_layout(size: int) -> np.dtype:
     """Seven doubles at the end."""
     return _layout(size, {'torque': (size - 56, '<f8', 7)})

@@ -9,13 +9,18 @@ import numpy as np
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
 from rosbags.typesys import Stores, get_typestore
+from shared_control import contract
+from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
 from shared_control.robot.limits import DOF, JOINT_NAMES
 
-from .. import topics
-from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout
+from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
 
+_WRENCHES = (
+    contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
+    contract.AGENT_APPLIED, contract.DISTURBANCE)
+_SMALLEST_WRENCH = 64
 _SMALLEST_JOINT_STATE = 192
 _SMALLEST_COMMAND = 60
 
@@ -40,12 +45,19 @@ class Bag:
     joint_states: JointStates
     commands: Commands
     human: Wrenches
+    """What the person asked for."""
     agent: Wrenches
+    """What the agent asked for."""
     applied: Wrenches
+    """The sum, as the controller applied it."""
+    human_applied: Wrenches
+    """What counted of the person's moment."""
+    agent_applied: Wrenches
+    """What counted of the agent's moment."""
     disturbance: Wrenches
     ball: BallTrack
-    training: dict[str, Series]
-    """By topic: those of ``topics.TRAINING``."""
+    training: dict[Topic, Series]
+    """By topic: those of ``contract.TRAINING``."""
     presses: list[Press]
     statuses: dict[str, list[Status]]
     """Reports on /diagnostics, by the name of the node."""
@@ -80,13 +92,14 @@ class _Collector:
         self._counts = Counter({connection.topic: 0 for connection in reader.connections})
         self._unusable: Counter[str] = Counter()
         self._bulk = {
-            topics.JOINT_STATES: BulkTopic(self._joint_state, joint_state_layout, _SMALLEST_JOINT_STATE),
-            topics.EFFORT_COMMANDS: BulkTopic(self._command, command_layout, _SMALLEST_COMMAND)}
+            contract.JOINT_STATES.full_name: BulkTopic(
+                self._joint_state, joint_state_layout, _SMALLEST_JOINT_STATE),
+            contract.EFFORT_COMMANDS.full_name: BulkTopic(self._command, command_layout, _SMALLEST_COMMAND),
+            **{topic.full_name: BulkTopic(self._wrench, wrench_layout, _SMALLEST_WRENCH) for topic in _WRENCHES}}
         self._rows: dict[str, list[tuple[Any, ...]]] = {}
         self._decoders = {
-            topics.HUMAN_WRENCH: _wrench, topics.AGENT_WRENCH: _wrench, topics.APPLIED_WRENCH: _wrench,
-            topics.DISTURBANCE: _wrench, topics.BALL: _ball,
-            **dict.fromkeys(topics.TRAINING, lambda message: (message.data,))}
+            contract.BALL.full_name: _ball,
+            **{topic.full_name: lambda message: (message.data,) for topic in contract.TRAINING}}
         self._keys: dict[str, KeyPresses] = {}
         self._presses: list[Press] = []
         self._statuses: dict[str, list[Status]] = {}
@@ -102,9 +115,9 @@ class _Collector:
         elif topic in self._decoders:
             message = self._reader.deserialize(raw, connection.msgtype)
             self._rows.setdefault(topic, []).append((received_ns, *self._decoders[topic](message)))
-        elif topic == topics.KEYS:
+        elif topic == contract.KEYS.full_name:
             self._add_keys(received_ns, self._reader.deserialize(raw, connection.msgtype))
-        elif topic == topics.DIAGNOSTICS:
+        elif topic == contract.DIAGNOSTICS.full_name:
             self._add_statuses(received_ns, self._reader.deserialize(raw, connection.msgtype))
 
     def finish(self, path: Path) -> Bag:
@@ -113,42 +126,51 @@ class _Collector:
         return Bag(
             path=path, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
             joint_states=JointStates(*self._bulk_columns(
-                topics.JOINT_STATES, _no_stamps(), *(np.empty((0, DOF)) for _ in range(3)))),
-            commands=Commands(*self._bulk_columns(topics.EFFORT_COMMANDS, np.empty((0, DOF)))),
-            human=self._wrenches(topics.HUMAN_WRENCH), agent=self._wrenches(topics.AGENT_WRENCH),
-            applied=self._wrenches(topics.APPLIED_WRENCH), disturbance=self._wrenches(topics.DISTURBANCE),
-            ball=BallTrack(*self._columns(topics.BALL, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
-            training={topic: Series(*self._columns(topic, np.empty(0))) for topic in topics.TRAINING},
+                contract.JOINT_STATES, _no_stamps(), *(np.empty((0, DOF)) for _ in range(3)))),
+            commands=Commands(*self._bulk_columns(contract.EFFORT_COMMANDS, np.empty((0, DOF)))),
+            human=self._wrenches(contract.HUMAN_WRENCH), agent=self._wrenches(contract.AGENT_WRENCH),
+            applied=self._wrenches(contract.APPLIED_WRENCH),
+            human_applied=self._wrenches(contract.HUMAN_APPLIED),
+            agent_applied=self._wrenches(contract.AGENT_APPLIED), disturbance=self._wrenches(contract.DISTURBANCE),
+            ball=BallTrack(*self._columns(contract.BALL, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
+            training={topic: Series(*self._columns(topic, np.empty(0))) for topic in contract.TRAINING},
             presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
 
-    def _bulk_columns(self, topic: str, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
-        bulk = self._bulk[topic]
+    def _bulk_columns(self, topic: Topic, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
+        bulk = self._bulk[topic.full_name]
         times, columns = bulk.finish()
-        self._unusable[topic] += bulk.unusable
+        self._unusable[topic.full_name] += bulk.unusable
         if not columns:
             return times, *empty
-        if topic == topics.JOINT_STATES:  # seconds and nanoseconds
+        if topic != contract.EFFORT_COMMANDS:  # which alone have no stamp: seconds and nanoseconds
             columns[0] = columns[0].astype(np.int64) @ np.array([1_000_000_000, 1])
         return times, *columns
 
-    def _columns(self, topic: str, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
-        rows = self._rows.get(topic)
+    def _columns(self, topic: Topic, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
+        rows = self._rows.get(topic.full_name)
         return tuple(np.array(column) for column in zip(*rows, strict=True)) if rows else (_no_stamps(), *empty)
 
-    def _wrenches(self, topic: str) -> Wrenches:
-        return Wrenches(*self._columns(
-            topic, _no_stamps(), np.empty(0, str), np.empty((0, 3)), np.empty((0, 3))))
+    def _wrenches(self, topic: Topic) -> Wrenches:
+        return Wrenches(*self._bulk_columns(topic, _no_stamps(), np.empty((0, 3)), np.empty((0, 3))))
 
     def _joint_state(self, raw: bytes) -> Row | None:
-        message: Any = self._reader.deserialize(raw, 'sensor_msgs/msg/JointState')
+        message: Any = self._reader.deserialize(raw, contract.JOINT_STATES.type)
         if tuple(message.name) != JOINT_NAMES or not all(
                 len(values) == DOF for values in (message.position, message.velocity, message.effort)):
             return None
         stamp = message.header.stamp
         return np.array([stamp.sec, stamp.nanosec]), message.position, message.velocity, message.effort
 
+    def _wrench(self, raw: bytes) -> Row | None:
+        message: Any = self._reader.deserialize(raw, contract.APPLIED_WRENCH.type)
+        if message.header.frame_id != contract.BASE_FRAME:
+            return None
+        stamp, force, torque = message.header.stamp, message.wrench.force, message.wrench.torque
+        return (np.array([stamp.sec, stamp.nanosec]), np.array([force.x, force.y, force.z]),
+                np.array([torque.x, torque.y, torque.z]))
+
     def _command(self, raw: bytes) -> Row | None:
-        message: Any = self._reader.deserialize(raw, 'std_msgs/msg/Float64MultiArray')
+        message: Any = self._reader.deserialize(raw, contract.EFFORT_COMMANDS.type)
         return (message.data,) if len(message.data) == DOF else None
 
     def _add_keys(self, received_ns: int, message: Any) -> None:
@@ -156,7 +178,7 @@ class _Collector:
         try:
             pressed = self._keys.setdefault(source, KeyPresses()).update(message.buttons.tolist())
         except ValueError:
-            self._unusable[topics.KEYS] += 1
+            self._unusable[contract.KEYS.full_name] += 1
             return
         self._presses += [Press(received_ns, source, key) for key in pressed]
 
@@ -165,11 +187,6 @@ class _Collector:
             values = {value.key: value.value for value in status.values}
             self._statuses.setdefault(status.name.lstrip('/'), []).append(
                 Status(received_ns, status.level == 0, status.message, values))
-
-
-def _wrench(message: Any) -> tuple[Any, ...]:
-    force, torque = message.wrench.force, message.wrench.torque
-    return (_stamp_ns(message), message.header.frame_id, (force.x, force.y, force.z), (torque.x, torque.y, torque.z))
 
 
 def _ball(message: Any) -> tuple[Any, ...]:

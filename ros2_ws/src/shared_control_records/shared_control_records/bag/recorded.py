@@ -38,14 +38,12 @@ class Commands:
 
 @dataclass(frozen=True, eq=False)
 class Wrenches:
-    """A wrench topic."""
+    """A wrench topic, in the base frame."""
 
     received_ns: np.ndarray
     """(n,)"""
     stamp_ns: np.ndarray
     """(n,)"""
-    frame: np.ndarray
-    """(n,), names"""
     force: np.ndarray
     """(n, 3), N"""
     torque: np.ndarray
@@ -55,6 +53,10 @@ class Wrenches:
     def m_y(self) -> np.ndarray:
         """(n,), N m"""
         return self.torque[:, 1]
+
+    def m_y_at(self, stamps_ns: np.ndarray) -> np.ndarray:
+        """The newest moment at each of some times, of the robot; the first one before that. There must be one. N m."""
+        return self.m_y[(np.searchsorted(self.stamp_ns, stamps_ns, 'right') - 1).clip(min=0)]
 
 
 @dataclass(frozen=True, eq=False)

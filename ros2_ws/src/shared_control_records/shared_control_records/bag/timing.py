@@ -1,11 +1,12 @@
-"""How fast a session ran, from what panda_sim_node said of itself."""
+"""How fast a session ran, from what the simulator reports of itself."""
 
 from dataclasses import dataclass
 
 from .reader import Bag
 from .recorded import Status
 
-SIMULATOR = 'panda_sim_node'
+OF_A_SIMULATOR = ('ticks', 'running_seconds')
+"""Values by which the reports of a simulator are found on /diagnostics, whatever its node is called."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,9 @@ class Timing:
 
 def simulator_runs(bag: Bag) -> list[Status]:
     """The last report of each run of the simulator: a run begins where its tick counter begins anew."""
-    statuses = [status for status in bag.statuses.get(SIMULATOR, []) if status.number('ticks') is not None]
+    statuses = sorted(
+        (status for reports in bag.statuses.values() for status in reports
+         if all(status.number(key) is not None for key in OF_A_SIMULATOR)), key=lambda status: status.received_ns)
     return [status for status, after in zip(statuses, [*statuses[1:], None], strict=True)
             if after is None or (after.number('ticks') or 0.0) < (status.number('ticks') or 0.0)]
 

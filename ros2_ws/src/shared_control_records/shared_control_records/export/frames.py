@@ -3,18 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from shared_control.control.moments import freshness
+from shared_control import contract
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import PandaModel, pitch
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
-from ..bag.recorded import Wrenches
-from ..topics import BASE_FRAME
 
 PERIOD_NS = round(POLICY_PERIOD * 1e9)
-COMMAND_TIMEOUT = 0.1
-"""s: the controller's default; an older moment counts no longer (architecture, "never latch")."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +53,12 @@ def episode_frames(bag: Bag) -> list[EpisodeFrames]:
     """The finished episodes of a bag, in their order.
 
     Raises:
-        ValueError: it has none; the message names the bag.
+        ValueError: it has none, or not the moments that counted; the message names the bag.
     """
+    for topic, wrenches in ((contract.HUMAN_APPLIED, bag.human_applied), (contract.AGENT_APPLIED, bag.agent_applied),
+                            (contract.APPLIED_WRENCH, bag.applied)):
+        if not len(wrenches.stamp_ns):
+            raise ValueError(f'the bag {bag.path} has no messages on {topic.full_name}')
     frames = [_frames(bag, track) for track in episode_tracks(bag)]
     if not frames:
         raise ValueError(f'the bag {bag.path} holds no finished episode')
@@ -78,21 +78,10 @@ def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
     tray_x, tilt = np.array(poses, float).reshape(-1, 2).T
     return EpisodeFrames(
         track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, bag.ball.velocity[ball],
-        tray_x - position[:, 0], tilt, _moments(bag.agent, end), _moments(bag.human, end), _moments(bag.applied, end))
+        tray_x - position[:, 0], tilt, bag.agent_applied.m_y_at(end),
+        bag.human_applied.m_y_at(end), bag.applied.m_y_at(end))
 
 
 def _newest(stamps_ns: np.ndarray, at_ns: np.ndarray) -> np.ndarray:
     """Indices of the newest messages at some times; the first message when there is none before."""
     return (np.searchsorted(stamps_ns, at_ns, 'right') - 1).clip(min=0)
-
-
-def _moments(wrenches: Wrenches, at_ns: np.ndarray) -> np.ndarray:
-    """The moments that count at some times, N m: the newest, faded when it is stale; 0 when there is none."""
-    usable = (wrenches.frame == BASE_FRAME) & np.isfinite(wrenches.m_y)
-    if not usable.any():
-        return np.zeros(len(at_ns))
-    stamps_ns, m_y = wrenches.stamp_ns[usable], wrenches.m_y[usable]
-    newest = _newest(stamps_ns, at_ns)
-    age = (at_ns - stamps_ns[newest]) * 1e-9
-    counts = np.array([freshness(seconds, COMMAND_TIMEOUT) if seconds >= 0.0 else 0.0 for seconds in age])
-    return m_y[newest] * counts

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
+from shared_control import contract
 from shared_control.files import write_atomically
 from shared_control.tasks.balance import BALANCE
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag, BagReadError
-from ..topics import EPISODE_RETURN, HUMAN_SHARE
 from .episodes import EpisodeRow, write_episodes
 from .folder import SessionFolder
 
@@ -50,7 +50,7 @@ def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:
     """An episode as the topics tell it."""
     first, last = bag.ball.stamp_ns.searchsorted((track.start_ns, track.end_ns))
     until_ns = bag.ball.received_ns[last]
-    returns, shares = bag.training[EPISODE_RETURN], bag.training[HUMAN_SHARE]
+    returns, shares = bag.training[contract.EPISODE_RETURN], bag.training[contract.HUMAN_SHARE]
     ended = returns.received_ns.searchsorted(until_ns)
     shared = shares.received_ns.searchsorted(until_ns) - 1
     return EpisodeRow(

@@ -16,7 +16,6 @@ from shared_control.rates import POLICY_PERIOD
 
 from ..bag.ball_tracks import EpisodeTrack
 from ..bag.reader import Bag
-from ..bag.recorded import Wrenches
 from ..plotting.style import AGENT, BAD, FAINT, GOOD, HUMAN, SEQUENCE, STYLE, cross, say_empty
 from .episodes import EpisodeRow
 from .final_test import FinalTest
@@ -114,16 +113,18 @@ def _draw_centre(axes: Axes) -> None:
 def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[EpisodeTrack]) -> None:
     human.set_title('Moments on the tray')
     human.tick_params(labelbottom=False)
-    if bag is None or not taught:
+    if bag is None or not taught or not (len(bag.human_applied.m_y) and len(bag.agent_applied.m_y)):
         for axes in (human, agent):
             say_empty(axes, 'nothing recorded')
         return
     start, end = taught[0].start_ns, taught[-1].end_ns
     bound = 1.0
     for axes, wrenches, colour, label in (
-            (human, bag.human, HUMAN, 'Human\n$M_{yh}$ (N m)'), (agent, bag.agent, AGENT, 'Robot\n$M_{yai}$ (N m)')):
-        seconds, m_y = _moments(wrenches, start, end)
-        explores = wrenches is bag.agent and len(m_y) > 1
+            (human, bag.human_applied, HUMAN, 'Human\n$M_{yh}$ (N m)'),
+            (agent, bag.agent_applied, AGENT, 'Robot\n$M_{yai}$ (N m)')):
+        stamps = np.arange(start, end + 1, round(POLICY_PERIOD * 1e9))
+        seconds, m_y = (stamps - start) * 1e-9, wrenches.m_y_at(stamps)
+        explores = wrenches is bag.agent_applied
         axes.fill_between(*_envelope(seconds, m_y), color=colour, linewidth=0.9, step='post',
                           alpha=0.3 if explores else 1.0)
         if explores:
@@ -144,13 +145,6 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
     agent.set_xlabel("Robot's time since the first episode (s); shaded and numbered: episodes")
 
 
-def _moments(wrenches: Wrenches, start_ns: int, end_ns: int) -> tuple[np.ndarray, np.ndarray]:
-    """Seconds since the start, and moments, N m, in that order."""
-    chosen = (wrenches.stamp_ns >= start_ns) & (wrenches.stamp_ns <= end_ns) & np.isfinite(wrenches.m_y)
-    stamps, first = np.unique(wrenches.stamp_ns[chosen], return_index=True)
-    return (stamps - start_ns) * 1e-9, wrenches.m_y[chosen][first]
-
-
 def _envelope(seconds: np.ndarray, m_y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Starts of many short spans (s), lowest and highest moment (N m) in each."""
     if len(seconds) < 2:
@@ -163,7 +157,7 @@ def _envelope(seconds: np.ndarray, m_y: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _moving_mean(m_y: np.ndarray) -> np.ndarray:
-    """Mean over half a second around each moment, N m."""
+    """Mean over half a second around each moment (one a policy period), N m."""
     weights = np.ones(round(0.5 / POLICY_PERIOD))
     return np.convolve(m_y, weights, 'same') / np.convolve(np.ones_like(m_y), weights, 'same')
 

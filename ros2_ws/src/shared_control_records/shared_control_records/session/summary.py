@@ -91,5 +91,4 @@ def _tutors(settings: dict[str, Any]) -> str | None:
 
 def _bag_checks(folder: SessionFolder, bag: Bag) -> list[str]:
     controller = folder.ros_parameters(CONTROLLER)
-    return check_bag(bag, moment_limit=float(controller.get('moment_limit', 20.0)),
-                     command_timeout=float(controller.get('command_timeout', 0.1)))
+    return check_bag(bag, moment_limit=float(controller.get('moment_limit', 20.0)))

@@ -4,7 +4,6 @@ import math
 import time
 
 import numpy as np
-from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -15,6 +14,7 @@ from .. import contract
 from ..fast_loop import Polled
 from ..joints import joint_positions
 from ..stamps import to_ns
+from ..wrenches import moment_of
 from .scene import Scene
 
 SILENT_AFTER = 0.5
@@ -112,8 +112,11 @@ class Moment:
 
     def update(self, now: float) -> float | None:
         """M_y, N m, at ``now`` of the monotonic clock."""
-        message: WrenchStamped | None = self._topic.take()
-        if message is not None:
-            m_y = message.wrench.torque.y
-            self._m_y, self._heard_at = (m_y if math.isfinite(m_y) else None), now
+        wrench = self._topic.take()
+        if wrench is not None:
+            self._heard_at = now
+            try:
+                self._m_y = float(moment_of(wrench)[0])
+            except ValueError:
+                self._m_y = None
         return self._m_y if now - self._heard_at <= SILENT_AFTER else None

@@ -38,7 +38,7 @@ class Requests:
         """It has learned it: end the lesson."""
         def answered(response: Trigger.Response) -> None:
             self._tell(response.message or ('The lesson ends.' if response.success else 'The learner refused to end.'))
-        self._call(self._finish, Trigger.Request(), answered, 'is the learner (ppo_agent_node) running?')
+        self._call(self._finish, Trigger.Request(), answered, 'is the learner running?')
 
     def toggle_pause(self) -> None:
         """Pause the simulator, or go on."""

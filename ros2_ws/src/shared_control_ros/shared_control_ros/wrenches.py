@@ -1,0 +1,34 @@
+"""A moment in a wrench message: which components hold it, and what a usable message is."""
+
+import math
+
+import numpy as np
+from geometry_msgs.msg import WrenchStamped
+
+from .contract import BASE_FRAME
+
+
+def base_wrench() -> WrenchStamped:
+    """A wrench of zero in the base frame, to be filled in."""
+    wrench = WrenchStamped()
+    wrench.header.frame_id = BASE_FRAME
+    return wrench
+
+
+def set_moment(wrench: WrenchStamped, moment: np.ndarray) -> None:
+    """Write M_y, (1,), N m, in place."""
+    wrench.wrench.torque.y = float(moment[0])
+
+
+def moment_of(wrench: WrenchStamped) -> np.ndarray:
+    """M_y of a wrench, (1,), N m.
+
+    Raises:
+        ValueError: the wrench is given in another frame than the base's, or M_y is not finite; the message says which.
+    """
+    if wrench.header.frame_id != BASE_FRAME:
+        raise ValueError(f'frame_id is {wrench.header.frame_id!r}, expected {BASE_FRAME!r}')
+    m_y = wrench.wrench.torque.y
+    if not math.isfinite(m_y):
+        raise ValueError(f'torque.y is {m_y}')
+    return np.array([m_y])

@@ -1,0 +1,38 @@
+"""What the controller used: the sum of the moments, and what each source put into it."""
+
+import numpy as np
+from rclpy.node import Node
+from shared_control_ros import contract
+from shared_control_ros.stamps import set_ns
+from shared_control_ros.wrenches import base_wrench, set_moment
+
+
+class AppliedMoments:
+    """Publishes /target_wrench, /human/applied_wrench and /agent/applied_wrench with one stamp.
+
+    Args:
+        node: the controller's node.
+    """
+
+    def __init__(self, node: Node):
+        self._publishers = [
+            node.create_publisher(topic.msg_type, topic.name, topic.qos)
+            for topic in (contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)]
+        self._wrench = base_wrench()
+        self._moments = np.zeros((len(self._publishers), 1))
+
+    @property
+    def m_y(self) -> float:
+        """The sum that was published last, N m."""
+        return float(self._moments[0, 0])
+
+    def publish(self, stamp_ns: int, applied: np.ndarray, human: np.ndarray, agent: np.ndarray, is_due: bool) -> None:
+        """Publish the sum and its parts, each (1,), N m, if one of them has changed or ``is_due``."""
+        moments = np.array((applied, human, agent))
+        if not is_due and (moments == self._moments).all():
+            return
+        self._moments = moments
+        set_ns(self._wrench.header.stamp, stamp_ns)
+        for publisher, moment in zip(self._publishers, moments, strict=True):
+            set_moment(self._wrench, moment)
+            publisher.publish(self._wrench)
