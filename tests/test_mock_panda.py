@@ -12,6 +12,7 @@ from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
 from shared_control.robot.limits import JOINT_NAMES, Q_MAX, Q_MIN, QD_MAX, TORQUE_MAX
 from shared_control.robot.posture import Q_REFERENCE
+from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.stamps import to_ns
@@ -46,7 +47,7 @@ class Robot:
         self._nodes = [start_node('torque_ctrl_node', **controller),
                        start_node(package, name='some_robot', **parameters)]
         self._background = Background(observer.node)
-        self.env = SharedControlEnv(GraphPlant(observer.node, self._background, observer.take_all))
+        self.env = SharedControlEnv(GraphPlant(observer.node, BALANCE.axes, self._background, observer.take_all))
         self.env.plant.wait_until_up()
 
     def balance(self, steps):

@@ -5,6 +5,7 @@ import pytest
 from ppo_agent_node.graph_plant import GraphPlant
 from shared_control.env import SharedControlEnv
 from shared_control.rates import TICKS_PER_ACTION
+from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.stamps import set_ns, to_ns
@@ -75,7 +76,7 @@ def graph(start_node, observer, person):
         set_moment(wrench, person.held)
         publisher.publish(wrench)
 
-    plant = GraphPlant(observer.node, background, attend)
+    plant = GraphPlant(observer.node, BALANCE.axes, background, attend)
     plant.wait_until_up()
     env = SharedControlEnv(plant)
     yield env, states

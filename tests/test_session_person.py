@@ -25,11 +25,11 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
 
     bag = read_bag(folder / 'bag')
     assert {press.source for press in bag.presses} == {'terminal'}
-    held = bag.human.m_y == 10.0
+    held = bag.human.moment[:, 0] == 10.0
     assert held.sum() > 10
-    counted = bag.human_applied.m_y == 10.0
+    counted = bag.human_applied.moment[:, 0] == 10.0
     assert counted.any() and set(bag.human_applied.stamp_ns[counted]) <= set(bag.applied.stamp_ns)
-    assert bag.agent_applied.m_y.any()
+    assert bag.agent_applied.moment.any()
     begin, end = bag.human.stamp_ns[held][[0, -1]]
     during = (bag.ball.stamp_ns >= begin) & (bag.ball.stamp_ns <= end)
     x = bag.ball.position[during, 0]

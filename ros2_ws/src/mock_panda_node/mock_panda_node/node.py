@@ -12,8 +12,8 @@ import time
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
+from shared_control.plugins import TASKS, load, names
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
@@ -51,7 +51,10 @@ class MockPandaNode:
         seed = declare(
             node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
-        self._starts = BallStarts(BALANCE, seed)
+        task = load(TASKS, declare(
+            node, 'task', 'balance', 'The task: the tray on the flange, and where a ball is dropped.',
+            choices=names(TASKS)))()
+        self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
         pace = declare(
             node, 'pace', 1.0, "Of the robot's clock against the wall clock. Below 1, for a machine that is too slow "
@@ -60,7 +63,7 @@ class MockPandaNode:
         self._has_clock = pace < 1.0
 
         self._random = np.random.default_rng(seed)
-        world = BulletWorld(BALANCE.scene, CONTROL_PERIOD)
+        world = BulletWorld(task.scene, CONTROL_PERIOD)
         world.reset(self._starts.next())
         self._robot = EffortPanda(world, timeout, limit_rate)
         self._states = StatePublisher(node, world, with_clock=self._has_clock)

@@ -11,10 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 from rclpy.node import Node
+from shared_control.plugins import TASKS, WORLDS, load, names
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.scene import Ball
-from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts
+from shared_control.world import World
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
@@ -23,7 +24,6 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
-from shared_control_sim.bullet import BulletWorld
 from std_srvs.srv import SetBool, Trigger
 
 from .tick_times import TickTimes
@@ -49,8 +49,12 @@ class PandaSimNode:
         seed = declare(
             node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
-        self._starts = BallStarts(BALANCE, seed)
+        task = load(TASKS, declare(
+            node, 'task', 'balance', 'The task: the tray on the flange, and where a ball is dropped.',
+            choices=names(TASKS)))()
+        self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
+        physics = declare(node, 'physics', 'bullet', 'The physics.', choices=names(WORLDS))
         timeout = declare(
             node, 'command_timeout', 0.1, 'free_running: without a torque for this long the joints brake.',
             unit='s', minimum=0.002, maximum=10.0)
@@ -60,7 +64,7 @@ class PandaSimNode:
                 node, 'ball_radius', Ball.radius, 'Radius of the ball.', unit='m', minimum=0.005, maximum=0.05))
 
         self._advance = self._advance_lockstep if mode == 'lockstep' else self._advance_free
-        self._world = BulletWorld(replace(BALANCE.scene, ball=ball), CONTROL_PERIOD)
+        self._world: World = load(WORLDS, physics)(replace(task.scene, ball=ball), CONTROL_PERIOD)
         self._world.reset(self._starts.next())
         self._states = StatePublisher(node, self._world)
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)

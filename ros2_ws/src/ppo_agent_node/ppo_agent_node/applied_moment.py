@@ -15,9 +15,11 @@ class AppliedMoment:
     Args:
         node: the node that subscribes.
         topic: of the controller.
+        axes: of the task.
     """
 
-    def __init__(self, node: Node, topic: Topic):
+    def __init__(self, node: Node, topic: Topic, axes: tuple[int, ...]):
+        self._axes = axes
         self._node = node
         self._input = Polled(node, topic, depth=topic.qos.depth)
         self.clear()
@@ -30,16 +32,16 @@ class AppliedMoment:
         """Forget everything, what waits included."""
         self._input.clear()
         self._next: WrenchStamped | None = None
-        self._moment = np.zeros(1)
+        self._moment = np.zeros(len(self._axes))
 
     def before(self, stamp_ns: int) -> np.ndarray:
-        """The newest moment stamped before ``stamp_ns``, (1,), N m. Stamps must not run backwards."""
+        """The newest moment stamped before ``stamp_ns``, (k,), N m. Stamps must not run backwards."""
         while (wrench := self._next or self._input.take()) is not None:
             if to_ns(wrench.header.stamp) >= stamp_ns:
                 break
             self._next = None
             try:
-                self._moment = moment_of(wrench)
+                self._moment = moment_of(wrench, self._axes)
             except ValueError as error:
                 self._node.get_logger().error(
                     f'dropped a message on {self._input.topic_name}: {error}', throttle_duration_sec=1.0)

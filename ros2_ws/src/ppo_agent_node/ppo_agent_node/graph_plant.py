@@ -39,18 +39,20 @@ class GraphPlant:
 
     Args:
         node: the agent's node.
+        axes: of the task.
         background: serves it.
         attend: called at every step and again and again while waiting; may raise to end the episode.
     """
 
-    def __init__(self, node: Node, background: Background, attend: Callable[[], None]):
+    def __init__(self, node: Node, axes: tuple[int, ...], background: Background, attend: Callable[[], None]):
+        self._axes = axes
         self._node = node
         self._attend = attend
         self._simulator = Simulator(node, background)
         self._balls = Polled(node, contract.BALL, depth=contract.BALL.qos.depth)
         self._joints = Polled(
             node, contract.JOINT_STATES_THROTTLE, depth=contract.JOINT_STATES_THROTTLE.qos.depth, raw=True)
-        self._moments = [AppliedMoment(node, topic) for topic in (
+        self._moments = [AppliedMoment(node, topic, axes) for topic in (
             contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.APPLIED_WRENCH)]
         self._publisher = node.create_publisher(
             contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)
@@ -101,13 +103,13 @@ class GraphPlant:
         while (ball := self._balls.take()) is not None:
             self._stamp_ns = to_ns(ball.header.stamp)
         if self._stamp_ns:
-            self._publish(np.zeros(1))
+            self._publish(np.zeros(len(self._axes)))
         self._attend()
 
     def _publish(self, agent: np.ndarray) -> None:
         """The agent's moment, (1,), N m, as the answer to the last observation."""
         set_ns(self._wrench.header.stamp, self._stamp_ns)
-        set_moment(self._wrench, agent)
+        set_moment(self._wrench, agent, self._axes)
         self._publisher.publish(self._wrench)
 
     def _next_ball(self) -> Odometry:
@@ -170,5 +172,5 @@ class GraphPlant:
     def close(self) -> None:
         """Leave no moment behind."""
         if self._stamp_ns:
-            self._publish(np.zeros(1))
+            self._publish(np.zeros(len(self._axes)))
             self._publisher.wait_for_all_acked(Duration(nanoseconds=200_000_000))

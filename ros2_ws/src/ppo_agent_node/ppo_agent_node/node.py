@@ -90,7 +90,7 @@ class PpoAgentNode(Callbacks):
         self._training = TrainingTopics(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
         self._background = Background(node)
-        self._plant = GraphPlant(node, self._background, self._attend)
+        self._plant = GraphPlant(node, self._learner.task.axes, self._background, self._attend)
         self._stop: Stop | None = None
         node.create_service(Trigger, contract.START_SERVICE, self._on_start)
         node.create_service(Trigger, contract.REPEAT_SERVICE, self._on_repeat)

@@ -59,17 +59,19 @@ ALONE: dict[str, dict[str, Any]] = {'torque_ctrl_node': {'enabled': False}}
 real one, and a controller that died must not move it again by itself."""
 
 
-def _moment_limit(preset_name: str) -> float:
-    """The bound of the sum that the task of a preset asks for, N m."""
+def _of_the_task(preset_name: str) -> dict[str, Any]:
+    """What the controller takes from the task of a preset."""
     from shared_control_learning.presets import preset  # late: `--help` need not wait for pinocchio
-    return float(preset(preset_name).task.limit.max())
+    task = preset(preset_name).task
+    return {'task': task.name, 'moment_limit': float(task.limit.max())}
 
 
 NODES = (
     SessionNode('session_recorder_node', lambda s: {'output': str(s.folder.bag)}),
     SessionNode('torque_ctrl_node', lambda s: {
-        'moment_limit': _moment_limit(s.settings.preset), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
-    SessionNode('panda_sim_node', lambda s: {'seed': s.settings.seed}, Role.CONTROL_LOOP),
+        **_of_the_task(s.settings.preset), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
+    SessionNode('panda_sim_node', lambda s: {
+        'task': _of_the_task(s.settings.preset)['task'], 'seed': s.settings.seed}, Role.CONTROL_LOOP),
     SessionNode('teleop_key_node', lambda s: {'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
     SessionNode('sim_tutor_node', lambda s: {'profile': s.settings.profile, 'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,

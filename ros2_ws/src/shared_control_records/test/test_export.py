@@ -38,9 +38,9 @@ def test_a_frame_a_policy_step_with_who_did_what(frames, lessons):
     assert tuple(map(len, frames)) == STEPS
     for frame, lesson in zip(frames, lessons, strict=True):
         assert (np.diff(frame.stamp_ns) == 20 * made.MS).all()
-        assert frame.m_y_agent == pytest.approx(lesson.m_y_agent)
-        assert frame.m_y_human == pytest.approx(lesson.m_y_human)
-        assert frame.m_y_applied == pytest.approx(lesson.m_y_agent + lesson.m_y_human)
+        assert frame.agent[:, 0] == pytest.approx(lesson.m_y_agent)
+        assert frame.human[:, 0] == pytest.approx(lesson.m_y_human)
+        assert frame.applied[:, 0] == pytest.approx(lesson.m_y_agent + lesson.m_y_human)
         assert frame.position_error == pytest.approx(lesson.position_error)
         assert frame.q == pytest.approx(np.tile(Q_REFERENCE, (len(frame), 1)))
 
@@ -49,7 +49,7 @@ def test_moments_are_those_that_counted_not_those_that_were_asked_for(lessons, t
     recording = made.record(lessons[:1])
     for sent in recording.of(contract.HUMAN_APPLIED):
         sent.wrench.torque.y /= 2.0
-    human = episode_frames(read_bag(recording.write(tmp_path / 'bag')))[0].m_y_human
+    human = episode_frames(read_bag(recording.write(tmp_path / 'bag')))[0].human[:, 0]
     assert human == pytest.approx(lessons[0].m_y_human / 2.0)
     assert abs(human[10]) == 2.5
 

@@ -30,7 +30,8 @@ def test_every_message_comes_back(recording, tmp_path):
     np.testing.assert_array_equal(joints.qd, [state.velocity for state in states])
     np.testing.assert_array_equal(joints.effort, [state.effort for state in states])
     np.testing.assert_array_equal(bag.commands.torque, [sent.data for sent in recording.of(contract.EFFORT_COMMANDS)])
-    np.testing.assert_array_equal(bag.agent.m_y, [w.wrench.torque.y for w in recording.of(contract.AGENT_WRENCH)])
+    np.testing.assert_array_equal(bag.agent.moment[:, 0], [
+        w.wrench.torque.y for w in recording.of(contract.AGENT_WRENCH)])
     balls = recording.of(contract.BALL)
     np.testing.assert_array_equal(bag.ball.position[:, 0], [ball.pose.pose.position.x for ball in balls])
     np.testing.assert_array_equal(bag.training[contract.EPISODE].values, [1, 2])
@@ -80,7 +81,7 @@ def test_presses_are_rising_edges_of_each_source(tmp_path):
 def test_an_empty_bag(tmp_path):
     bag = read_bag(made.Recording().write(tmp_path / 'bag'))
     assert bag.joint_states.q.shape == (0, DOF)
-    assert bag.applied.m_y.shape == (0,)
+    assert bag.applied.moment.shape == (0, 1)
     assert not bag.presses
     assert episode_tracks(bag) == []
 

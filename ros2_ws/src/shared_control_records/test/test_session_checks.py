@@ -78,7 +78,7 @@ def test_a_moment_that_nobody_asked_for(recording, tmp_path, error):
     applied_at(recording, 2000).wrench.torque.y += error
     found = findings(recording, tmp_path)
     assert len(found) == 1
-    assert 'M_y is not M_yai + M_yh at 1 tick; the first after 2.0' in found[0]
+    assert 'the sum is not that of its parts at 1 tick; the first after 2.0' in found[0]
 
 
 @pytest.mark.parametrize('topic', [contract.HUMAN_APPLIED, contract.AGENT_APPLIED])

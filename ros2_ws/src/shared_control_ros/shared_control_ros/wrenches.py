@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 from geometry_msgs.msg import WrenchStamped
+from shared_control.tasks.balance import BALANCE
+from shared_control.wrench import COMPONENTS
 
 from .contract import BASE_FRAME
 
@@ -15,20 +17,27 @@ def base_wrench() -> WrenchStamped:
     return wrench
 
 
-def set_moment(wrench: WrenchStamped, moment: np.ndarray) -> None:
-    """Write M_y, (1,), N m, in place."""
-    wrench.wrench.torque.y = float(moment[0])
+def set_moment(wrench: WrenchStamped, moment: np.ndarray, axes: tuple[int, ...] = BALANCE.axes) -> None:
+    """Write the moment along a task's axes, (k,), N m, in place."""
+    for row, value in zip(axes, moment.tolist(), strict=True):
+        part, component = COMPONENTS[row]
+        setattr(getattr(wrench.wrench, part), component, value)
 
 
-def moment_of(wrench: WrenchStamped) -> np.ndarray:
-    """M_y of a wrench, (1,), N m.
+def moment_of(wrench: WrenchStamped, axes: tuple[int, ...] = BALANCE.axes) -> np.ndarray:
+    """The moment along a task's axes, (k,), N m.
 
     Raises:
-        ValueError: the wrench is given in another frame than the base's, or M_y is not finite; the message says which.
+        ValueError: the wrench is given in another frame than the base's, or a component is not finite; the message
+            says which.
     """
     if wrench.header.frame_id != BASE_FRAME:
         raise ValueError(f'frame_id is {wrench.header.frame_id!r}, expected {BASE_FRAME!r}')
-    m_y = wrench.wrench.torque.y
-    if not math.isfinite(m_y):
-        raise ValueError(f'torque.y is {m_y}')
-    return np.array([m_y])
+    values = []
+    for row in axes:
+        part, component = COMPONENTS[row]
+        value = getattr(getattr(wrench.wrench, part), component)
+        if not math.isfinite(value):
+            raise ValueError(f'{part}.{component} is {value}')
+        values.append(value)
+    return np.array(values)

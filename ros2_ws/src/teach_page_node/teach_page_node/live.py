@@ -65,7 +65,7 @@ class LiveDesk:
             scene.message = ''
         return Picture(
             q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch,
-            m_y_human=self._human.update(now), m_y_agent=scene.m_y_agent, m_y_applied=scene.m_y_applied,
+            human=self._human.update(now), agent=scene.agent, applied=scene.applied,
             phase=self._lesson.phase, episode=self._lesson.episode, time_left=scene.time_left,
             human_share=scene.human_share, success=scene.success, keys=[int(now < lit) for lit in self._lit_until],
             hand=self._hand, paused=self._requests.paused, silent_for=scene.simulator_silent_for,

@@ -20,11 +20,11 @@ class Picture:
     """(3,), m: along, across and above the tray, in its frame."""
     pitch: float | None = None
     """Of the tray, rad; positive: the left of the picture (base +x) is down."""
-    m_y_human: float | None = None
+    human: float | None = None
     """N m"""
-    m_y_agent: float | None = None
+    agent: float | None = None
     """N m"""
-    m_y_applied: float | None = None
+    applied: float | None = None
     """The sum as the controller applies it, N m."""
     phase: str | None = None
     episode: int | None = None
@@ -52,8 +52,8 @@ class Picture:
         """For the browser, without the history."""
         return {
             'q': _rounded(self.q), 'ball': _rounded(self.ball), 'on_tray': _rounded(self.ball_on_tray),
-            'pitch': _rounded(self.pitch), 'human': _rounded(self.m_y_human), 'agent': _rounded(self.m_y_agent),
-            'applied': _rounded(self.m_y_applied), 'phase': self.phase, 'episode': self.episode,
+            'pitch': _rounded(self.pitch), 'human': _rounded(self.human), 'agent': _rounded(self.agent),
+            'applied': _rounded(self.applied), 'phase': self.phase, 'episode': self.episode,
             'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share), 'success': self.success,
             'keys': self.keys, 'hand': self.hand, 'paused': self.paused, 'silent_for': _rounded(self.silent_for),
             'notice': self.notice, 'time': _rounded(self.time), 'replay': self.replay}

@@ -51,9 +51,9 @@ class Recording:
         training = self._bag.training
         return Picture(
             q=q, ball=ball, ball_on_tray=rotation.T @ (ball - origin), pitch=pitch(rotation),
-            m_y_human=_moment(self._bag.human_applied, now_ns),
-            m_y_agent=_moment(self._bag.agent_applied, now_ns),
-            m_y_applied=_moment(self._bag.applied, now_ns),
+            human=_moment(self._bag.human_applied, now_ns),
+            agent=_moment(self._bag.agent_applied, now_ns),
+            applied=_moment(self._bag.applied, now_ns),
             phase=_latest(training[contract.PHASE], now_ns), episode=_latest(training[contract.EPISODE], now_ns),
             time_left=_latest(training[contract.TIME_LEFT], now_ns),
             human_share=_latest(training[contract.HUMAN_SHARE], now_ns),
@@ -97,4 +97,4 @@ def _moment(wrenches: Wrenches, now_ns: int) -> float | None:
     index = _before(wrenches.received_ns, now_ns)
     if index is None or now_ns - wrenches.received_ns[index] > STALE_AFTER * 1e9:
         return None
-    return float(wrenches.m_y[index])
+    return float(wrenches.moment[index, 0])

@@ -109,7 +109,7 @@ class Panel:
         self._observer.update(scene)
         self._notice_resumption()
         scene.phase, scene.episode = lesson.phase, lesson.episode
-        scene.m_y_human = sources.m_y
+        scene.human = sources.m_y
         scene.hand = 'you' if sources.last_pressed in ('', SOURCE) else sources.last_pressed
         scene.paused = self.requests.paused
         if now > self._message_until:

@@ -29,9 +29,9 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
     above = [(9, _title(scene, width)), (1, ''), (8, _headline(scene, width)), (0, '')]
     below = [
         (6, _tilt(scene, width)), (2, ''),
-        (7, _bar(scene.hand, 'M_yh', scene.m_y_human, scene, width, unicode)),
-        (4, _bar('robot', 'M_yai', scene.m_y_agent, scene, width, unicode)),
-        (5, _bar('sum', 'M_y', scene.m_y_applied, scene, width, unicode)),
+        (7, _bar(scene.hand, 'M_yh', scene.human, scene, width, unicode)),
+        (4, _bar('robot', 'M_yai', scene.agent, scene, width, unicode)),
+        (5, _bar('sum', 'M_y', scene.applied, scene, width, unicode)),
         (2, ''),
         (3, _share(scene, width, unicode)),
         (3, _returns(scene, width, unicode)),

@@ -8,7 +8,7 @@ from teleop_key_node.picture import draw
 from teleop_key_node.screen import render
 
 SCENE = Scene(
-    pitch=0.04, ball_along=0.10, ball_height=0.021, m_y_human=5.0, m_y_agent=-2.0, m_y_applied=3.0, human_share=0.25,
+    pitch=0.04, ball_along=0.10, ball_height=0.021, human=5.0, agent=-2.0, applied=3.0, human_share=0.25,
     phase='teach', episode=3, time_left=9.4, returns=[-5000.0, -200.0, 40.0], success=0.95)
 
 
@@ -54,11 +54,11 @@ def test_bars_point_to_where_the_ball_is_pushed():
     assert agent[axis - 1] == ' '
     assert '-2.0 N m' in agent
     assert human.count('█') > total.count('█') > agent.count('█')
-    assert '-- N m' in line_with(render(replace(SCENE, m_y_agent=None), 80, 24), 'M_yai')
+    assert '-- N m' in line_with(render(replace(SCENE, agent=None), 80, 24), 'M_yai')
 
 
 def test_bars_keep_to_their_place_beyond_the_scale():
-    lines = render(replace(SCENE, m_y_applied=-105.0), 80, 24)
+    lines = render(replace(SCENE, applied=-105.0), 80, 24)
     assert '-105.0 N m' in line_with(lines, 'M_y ')
     assert len(line_with(lines, 'M_y ')) == 80
 

@@ -12,27 +12,29 @@ class AppliedMoments:
 
     Args:
         node: the controller's node.
+        axes: of the task.
     """
 
-    def __init__(self, node: Node):
+    def __init__(self, node: Node, axes: tuple[int, ...]):
+        self._axes = axes
         self._publishers = [
             node.create_publisher(topic.msg_type, topic.name, topic.qos)
             for topic in (contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)]
         self._wrench = base_wrench()
-        self._moments = np.zeros((len(self._publishers), 1))
+        self._moments = np.zeros((len(self._publishers), len(axes)))
 
     @property
-    def m_y(self) -> float:
-        """The sum that was published last, N m."""
-        return float(self._moments[0, 0])
+    def applied(self) -> list[float]:
+        """The sum that was published last, (k,), N m."""
+        return self._moments[0].tolist()
 
     def publish(self, stamp_ns: int, applied: np.ndarray, human: np.ndarray, agent: np.ndarray, is_due: bool) -> None:
-        """Publish the sum and its parts, each (1,), N m, if one of them has changed or ``is_due``."""
+        """Publish the sum and its parts, each (k,), N m, if one of them has changed or ``is_due``."""
         moments = np.array((applied, human, agent))
         if not is_due and (moments == self._moments).all():
             return
         self._moments = moments
         set_ns(self._wrench.header.stamp, stamp_ns)
         for publisher, moment in zip(self._publishers, moments, strict=True):
-            set_moment(self._wrench, moment)
+            set_moment(self._wrench, moment, self._axes)
             publisher.publish(self._wrench)

@@ -13,6 +13,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
+from shared_control.plugins import TASKS, load, names
 from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
 from shared_control.robot.limits import DOF
 from shared_control.robot.model import PandaModel
@@ -41,11 +42,15 @@ class TorqueCtrlNode:
     def __init__(self) -> None:
         self.node = node = Node('torque_ctrl_node')
         gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(GAINS))
+        task = load(TASKS, declare(
+            node, 'task', 'balance', 'The task: along which axes moments count.', choices=names(TASKS)))()
         self._timeout = declare(
             node, 'command_timeout', 0.1, 'A wrench older than this counts as zero.', unit='s',
             minimum=0.02, maximum=1.0)
-        self._moment_limit = declare(
-            node, 'moment_limit', 20.0, 'Bound of |M_yai + M_yh|.', unit='N m', minimum=0.0, maximum=200.0)
+        limit = declare(
+            node, 'moment_limit', float(task.limit.max()), 'Bound of the sum of both moments about each axis.',
+            unit='N m', minimum=0.0, maximum=200.0)
+        self._moment_limit = np.full(len(task.axes), limit)
         compensates = declare(
             node, 'robot_compensates_gravity', False, 'The robot adds gravity itself: leave it out of the command.')
         horizon = declare(
@@ -59,11 +64,12 @@ class TorqueCtrlNode:
             'controller/enable.')
 
         self._controller = ComputedTorqueController(
-            PandaModel(), gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon, robot_compensates_gravity=compensates)
+            PandaModel(), task.axes, gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon,
+            robot_compensates_gravity=compensates)
         self._reader = JointStateReader()
         self._joint_states = Polled(node, contract.JOINT_STATES, raw=True)
-        self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)
-        self._agent = WrenchInput(node, contract.AGENT_WRENCH, self._timeout)
+        self._human = WrenchInput(node, contract.HUMAN_WRENCH, task.axes, self._timeout)
+        self._agent = WrenchInput(node, contract.AGENT_WRENCH, task.axes, self._timeout)
         sources = {'human': self._human, 'agent': self._agent}
         self._awaited = [source for name, source in sources.items() if name in wait_for]
         self._policy_period_ns = round(POLICY_PERIOD * 1e9)
@@ -73,7 +79,7 @@ class TorqueCtrlNode:
         self._torque, = WireLayout(command, ('data',)).views(self._command)
         self._command_publisher = node.create_publisher(
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
-        self._applied = AppliedMoments(node)
+        self._applied = AppliedMoments(node, task.axes)
         self._safety = Safety(node, enabled, self._report)
 
         if not enabled:
@@ -165,7 +171,7 @@ class TorqueCtrlNode:
             problems[self._command_publisher.topic_name] = problem
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if self._safety.is_stopped else None, enabled=self._safety.enabled,
-            emergency_stop=self._safety.is_stopped, m_y=self._applied.m_y)
+            emergency_stop=self._safety.is_stopped, applied=self._applied.applied)
 
     def close(self) -> None:
         """Nothing to undo: the robot stops applying what it no longer receives."""

@@ -17,14 +17,16 @@ class WrenchInput:
     Args:
         node: the node that listens.
         topic: where the source publishes.
+        axes: of the task.
         timeout: age after which a wrench is stale, s.
     """
 
-    def __init__(self, node: Node, topic: Topic, timeout: float):
+    def __init__(self, node: Node, topic: Topic, axes: tuple[int, ...], timeout: float):
         self._node = node
         self._input = Polled(node, topic)
         self._timeout = timeout
-        self._source = MomentSource(1)
+        self._axes = axes
+        self._source = MomentSource(len(axes))
         self.topic_name = self._input.topic_name
 
     def update(self, now_ns: int) -> None:
@@ -33,7 +35,7 @@ class WrenchInput:
         if message is None:
             return
         try:
-            moment, stamp_ns = moment_of(message), to_ns(message.header.stamp)
+            moment, stamp_ns = moment_of(message, self._axes), to_ns(message.header.stamp)
             self._check_age((now_ns - stamp_ns) * 1e-9)
         except ValueError as error:
             self._node.get_logger().error(
@@ -49,7 +51,7 @@ class WrenchInput:
                 f'its stamp is {-age:.3f} s ahead of /joint_states: do both use the same clock (use_sim_time)?')
 
     def moment(self, now_ns: int) -> np.ndarray:
-        """The moment that counts at ``now_ns``, (1,), N m."""
+        """The moment that counts at ``now_ns``, (k,), N m."""
         return self._source.at(now_ns, self._timeout)
 
     def problem(self, now_ns: int) -> str:

@@ -1,4 +1,4 @@
-"""Whether a bag is what it should be: complete, without gaps, and with M_y = M_yai + M_yh throughout."""
+"""Whether a bag is what it should be: complete, without gaps, and with a sum that is that of its parts throughout."""
 
 from collections.abc import Iterable, Iterator
 from functools import reduce
@@ -106,20 +106,24 @@ def _check_sums(bag: Bag, moment_limit: float) -> Iterator[str]:
     """The controller publishes a sum and its parts with one stamp, so they must agree to the last bit."""
     of_topics = [_by_stamp(wrenches) for wrenches in (bag.applied, bag.human_applied, bag.agent_applied)]
     common = reduce(np.intersect1d, (stamps for stamps, _ in of_topics))
-    m_y, human, agent = (moments[np.searchsorted(stamps, common)] for stamps, moments in of_topics)
+    applied, human, agent = (moments[np.searchsorted(stamps, common)] for stamps, moments in of_topics)
     sums = np.clip(agent + human, -moment_limit, moment_limit)
-    wrong = np.flatnonzero(m_y != sums)
+    wrong = np.flatnonzero((applied != sums).any(axis=1))
     if len(wrong):
         first = wrong[0]
         received_ns = bag.applied.received_ns[np.flatnonzero(bag.applied.stamp_ns == common[first])[-1]]
-        yield (f'{APPLIED_WRENCH}: M_y is not M_yai + M_yh at {_count(len(wrong), "tick")}; the first after '
-               f'{_seconds(bag, received_ns)}: {m_y[first]:.4f} N m applied, {sums[first]:.4f} N m of its parts')
+        yield (f'{APPLIED_WRENCH}: the sum is not that of its parts at {_count(len(wrong), "tick")}; the first after '
+               f'{_seconds(bag, received_ns)}: {_moment(applied[first])} applied, {_moment(sums[first])} of its parts')
 
 
 def _by_stamp(wrenches: Wrenches) -> tuple[np.ndarray, np.ndarray]:
     """Stamps, rising, and the moment of each: of a tick that was answered again, the last one."""
     stamps, last = np.unique(wrenches.stamp_ns[::-1], return_index=True)
-    return stamps, wrenches.m_y[::-1][last]
+    return stamps, wrenches.moment[::-1][last]
+
+
+def _moment(moment: np.ndarray) -> str:
+    return ', '.join(f'{value:.4f}' for value in moment) + ' N m'
 
 
 def _restarts(bag: Bag) -> int:

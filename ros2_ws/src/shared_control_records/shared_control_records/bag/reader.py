@@ -13,13 +13,14 @@ from shared_control import contract
 from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
 from shared_control.robot.limits import DOF, JOINT_NAMES
+from shared_control.tasks.balance import BALANCE
 
 from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
 
 _WRENCHES = (
     contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
-    contract.AGENT_APPLIED, contract.DISTURBANCE)
+    contract.AGENT_APPLIED)
 _SMALLEST_WRENCH = 64
 _SMALLEST_JOINT_STATE = 192
 _SMALLEST_COMMAND = 60
@@ -54,7 +55,6 @@ class Bag:
     """What counted of the person's moment."""
     agent_applied: Wrenches
     """What counted of the agent's moment."""
-    disturbance: Wrenches
     ball: BallTrack
     training: dict[Topic, Series]
     """By topic: those of ``contract.TRAINING``."""
@@ -63,8 +63,11 @@ class Bag:
     """Reports on /diagnostics, by the name of the node."""
 
 
-def read_bag(path: Path) -> Bag:
+def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes) -> Bag:
     """Read a bag: a rosbag2 folder or a single MCAP file.
+
+    Args:
+        axes: of the task, along which moments are taken from wrenches.
 
     Raises:
         BagReadError: there is none, or it was not finished, or it is damaged.
@@ -76,7 +79,7 @@ def read_bag(path: Path) -> Bag:
         raise BagReadError(f'there is no bag {path}')
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
-            collector = _Collector(reader)
+            collector = _Collector(reader, axes)
             for connection, received_ns, raw in reader.messages():
                 collector.add(connection, received_ns, raw)
             return collector.finish(path)
@@ -87,8 +90,8 @@ def read_bag(path: Path) -> Bag:
 class _Collector:
     """Sorts the messages of a bag by topic, decoding them."""
 
-    def __init__(self, reader: AnyReader):
-        self._reader = reader
+    def __init__(self, reader: AnyReader, axes: tuple[int, ...]):
+        self._reader, self._axes = reader, axes
         self._counts = Counter({connection.topic: 0 for connection in reader.connections})
         self._unusable: Counter[str] = Counter()
         self._bulk = {
@@ -131,7 +134,7 @@ class _Collector:
             human=self._wrenches(contract.HUMAN_WRENCH), agent=self._wrenches(contract.AGENT_WRENCH),
             applied=self._wrenches(contract.APPLIED_WRENCH),
             human_applied=self._wrenches(contract.HUMAN_APPLIED),
-            agent_applied=self._wrenches(contract.AGENT_APPLIED), disturbance=self._wrenches(contract.DISTURBANCE),
+            agent_applied=self._wrenches(contract.AGENT_APPLIED),
             ball=BallTrack(*self._columns(contract.BALL, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
             training={topic: Series(*self._columns(topic, np.empty(0))) for topic in contract.TRAINING},
             presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
@@ -151,7 +154,9 @@ class _Collector:
         return tuple(np.array(column) for column in zip(*rows, strict=True)) if rows else (_no_stamps(), *empty)
 
     def _wrenches(self, topic: Topic) -> Wrenches:
-        return Wrenches(*self._bulk_columns(topic, _no_stamps(), np.empty((0, 3)), np.empty((0, 3))))
+        received_ns, stamp_ns, force, torque = self._bulk_columns(
+            topic, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))
+        return Wrenches(received_ns, stamp_ns, np.hstack((force, torque))[:, self._axes])
 
     def _joint_state(self, raw: bytes) -> Row | None:
         message: Any = self._reader.deserialize(raw, contract.JOINT_STATES.type)

@@ -44,19 +44,15 @@ class Wrenches:
     """(n,)"""
     stamp_ns: np.ndarray
     """(n,)"""
-    force: np.ndarray
-    """(n, 3), N"""
-    torque: np.ndarray
-    """(n, 3), N m"""
+    moment: np.ndarray
+    """Along the task's axes, (n, k), N m"""
 
-    @property
-    def m_y(self) -> np.ndarray:
-        """(n,), N m"""
-        return self.torque[:, 1]
+    def moment_at(self, stamps_ns: np.ndarray) -> np.ndarray:
+        """The newest moment at each of some times of the robot, (m, k), N m; the first one before that.
 
-    def m_y_at(self, stamps_ns: np.ndarray) -> np.ndarray:
-        """The newest moment at each of some times, of the robot; the first one before that. There must be one. N m."""
-        return self.m_y[(np.searchsorted(self.stamp_ns, stamps_ns, 'right') - 1).clip(min=0)]
+        There must be one.
+        """
+        return self.moment[(np.searchsorted(self.stamp_ns, stamps_ns, 'right') - 1).clip(min=0)]
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,12 +38,12 @@ class EpisodeFrames:
     """(n,), tray centre - ball along base x, m"""
     pitch: np.ndarray
     """(n,), of the tray, rad"""
-    m_y_agent: np.ndarray
-    """(n,), M_yai, N m"""
-    m_y_human: np.ndarray
-    """(n,), M_yh, N m"""
-    m_y_applied: np.ndarray
-    """(n,), M_y as the controller applied it, N m"""
+    agent: np.ndarray
+    """The agent's moment as it counted, (n, k), N m"""
+    human: np.ndarray
+    """The human's, likewise"""
+    applied: np.ndarray
+    """Their sum as applied, likewise"""
 
     def __len__(self) -> int:
         return len(self.stamp_ns)
@@ -78,8 +78,8 @@ def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
     tray_x, tilt = np.array(poses, float).reshape(-1, 2).T
     return EpisodeFrames(
         track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, bag.ball.velocity[ball],
-        tray_x - position[:, 0], tilt, bag.agent_applied.m_y_at(end),
-        bag.human_applied.m_y_at(end), bag.applied.m_y_at(end))
+        tray_x - position[:, 0], tilt, bag.agent_applied.moment_at(end),
+        bag.human_applied.moment_at(end), bag.applied.moment_at(end))
 
 
 def _newest(stamps_ns: np.ndarray, at_ns: np.ndarray) -> np.ndarray:

@@ -20,6 +20,8 @@ import pyarrow.parquet as pq
 from shared_control.files import write_atomically
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.limits import JOINT_NAMES
+from shared_control.tasks.balance import BALANCE
+from shared_control.wrench import AXIS_NAMES
 
 from .frames import EpisodeFrames
 
@@ -28,12 +30,16 @@ TASK = 'Bring the ball to the centre of the tray and keep it there.'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
 
+def _moments(who: str) -> list[str]:
+    return [f'{AXIS_NAMES[row]}_{who}' for row in BALANCE.axes]
+
+
 FEATURES: dict[str, dict[str, Any]] = {
     'observation.state': {'dtype': 'float32', 'names': [
         *JOINT_NAMES, *(f'{name}_velocity' for name in JOINT_NAMES), 'position_error', 'ball_velocity', 'tray_pitch']},
-    'action': {'dtype': 'float32', 'names': ['m_y_applied']},
-    'complementary_info.action_agent': {'dtype': 'float32', 'names': ['m_y_agent']},
-    'complementary_info.action_human': {'dtype': 'float32', 'names': ['m_y_human']},
+    'action': {'dtype': 'float32', 'names': _moments('applied')},
+    'complementary_info.action_agent': {'dtype': 'float32', 'names': _moments('agent')},
+    'complementary_info.action_human': {'dtype': 'float32', 'names': _moments('human')},
     'timestamp': {'dtype': 'float32', 'names': None},
     'frame_index': {'dtype': 'int64', 'names': None},
     'episode_index': {'dtype': 'int64', 'names': None},
@@ -84,7 +90,7 @@ def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.nda
     state = np.column_stack([episode.q, episode.qd, episode.position_error, episode.ball_velocity[:, 0],
                              episode.pitch])
     frames = np.arange(count)
-    values = (state, episode.m_y_applied, episode.m_y_agent, episode.m_y_human, frames * POLICY_PERIOD, frames,
+    values = (state, episode.applied, episode.agent, episode.human, frames * POLICY_PERIOD, frames,
               np.full(count, index), frames + start, np.zeros(count))
     return {name: value.reshape(count, -1).astype(feature['dtype'])
             for (name, feature), value in zip(FEATURES.items(), values, strict=True)}

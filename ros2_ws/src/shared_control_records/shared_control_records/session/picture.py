@@ -113,7 +113,7 @@ def _draw_centre(axes: Axes) -> None:
 def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[EpisodeTrack]) -> None:
     human.set_title('Moments on the tray')
     human.tick_params(labelbottom=False)
-    if bag is None or not taught or not (len(bag.human_applied.m_y) and len(bag.agent_applied.m_y)):
+    if bag is None or not taught or not (len(bag.human_applied.moment) and len(bag.agent_applied.moment)):
         for axes in (human, agent):
             say_empty(axes, 'nothing recorded')
         return
@@ -123,14 +123,17 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
             (human, bag.human_applied, HUMAN, 'Human\n$M_{yh}$ (N m)'),
             (agent, bag.agent_applied, AGENT, 'Robot\n$M_{yai}$ (N m)')):
         stamps = np.arange(start, end + 1, round(POLICY_PERIOD * 1e9))
-        seconds, m_y = (stamps - start) * 1e-9, wrenches.m_y_at(stamps)
+        seconds, moments = (stamps - start) * 1e-9, wrenches.moment_at(stamps)
         explores = wrenches is bag.agent_applied
-        axes.fill_between(*_envelope(seconds, m_y), color=colour, linewidth=0.9, step='post',
-                          alpha=0.3 if explores else 1.0)
+        for moment in moments.T:
+            axes.fill_between(*_envelope(seconds, moment), color=colour, linewidth=0.9, step='post',
+                              alpha=0.3 if explores else 1.0)
+            if explores:
+                axes.plot(seconds, _moving_mean(moment), color=colour, linewidth=1.4)
         if explores:
-            axes.plot(seconds, _moving_mean(m_y), color=colour, linewidth=1.4, label='mean of 0.5 s')
+            axes.lines[-1].set_label('mean of 0.5 s')
             axes.legend(loc='upper right', borderpad=0, bbox_to_anchor=(1, 1.28))
-        bound = max(bound, np.abs(m_y).max(initial=0.0))
+        bound = max(bound, np.abs(moments).max(initial=0.0))
         axes.set_ylabel(label)
         axes.axhline(0, color=FAINT, linewidth=0.8)
         for index, track in enumerate(taught):
@@ -145,21 +148,21 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
     agent.set_xlabel("Robot's time since the first episode (s); shaded and numbered: episodes")
 
 
-def _envelope(seconds: np.ndarray, m_y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _envelope(seconds: np.ndarray, moment: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Starts of many short spans (s), lowest and highest moment (N m) in each."""
     if len(seconds) < 2:
-        return seconds, m_y, m_y
+        return seconds, moment, moment
     spans = np.searchsorted(seconds, np.linspace(0, seconds[-1], MOMENT_BINS), 'right') - 1
     firsts = np.unique(spans.clip(min=0))
-    before = m_y[np.maximum(firsts - 1, 0)]  # so that a step is drawn as a line from old to new
-    return (seconds[firsts], np.minimum(np.minimum.reduceat(m_y, firsts), before),
-            np.maximum(np.maximum.reduceat(m_y, firsts), before))
+    before = moment[np.maximum(firsts - 1, 0)]  # so that a step is drawn as a line from old to new
+    return (seconds[firsts], np.minimum(np.minimum.reduceat(moment, firsts), before),
+            np.maximum(np.maximum.reduceat(moment, firsts), before))
 
 
-def _moving_mean(m_y: np.ndarray) -> np.ndarray:
+def _moving_mean(moment: np.ndarray) -> np.ndarray:
     """Mean over half a second around each moment (one a policy period), N m."""
     weights = np.ones(round(0.5 / POLICY_PERIOD))
-    return np.convolve(m_y, weights, 'same') / np.convolve(np.ones_like(m_y), weights, 'same')
+    return np.convolve(moment, weights, 'same') / np.convolve(np.ones_like(moment), weights, 'same')
 
 
 def _draw_returns(axes: Axes, rows: list[EpisodeRow]) -> None:

@@ -59,8 +59,8 @@ class Observer:
             self._read_ball(ball, scene)
         silent = now - self._moved_at
         scene.simulator_silent_for = silent if silent > SILENT_AFTER else None
-        scene.m_y_agent = self._agent.update(now)
-        scene.m_y_applied = self._applied.update(now)
+        scene.agent = self._agent.update(now)
+        scene.applied = self._applied.update(now)
         scene.time_left = self._latest(self._time_left, scene.time_left)
         scene.human_share = self._latest(self._share, scene.human_share)
         scene.success = self._latest(self._success, scene.success)
@@ -103,11 +103,11 @@ class Observer:
 
 
 class Moment:
-    """M_y of a wrench topic; None when it is silent."""
+    """The moment of a wrench topic along the first axis of the task; None when it is silent."""
 
     def __init__(self, node: Node, topic: contract.Topic):
         self._topic = Polled(node, topic, qos_profile=_NEWEST)
-        self._m_y: float | None = None
+        self._moment: float | None = None
         self._heard_at = -math.inf
 
     def update(self, now: float) -> float | None:
@@ -116,7 +116,7 @@ class Moment:
         if wrench is not None:
             self._heard_at = now
             try:
-                self._m_y = float(moment_of(wrench)[0])
+                self._moment = float(moment_of(wrench)[0])
             except ValueError:
-                self._m_y = None
-        return self._m_y if now - self._heard_at <= SILENT_AFTER else None
+                self._moment = None
+        return self._moment if now - self._heard_at <= SILENT_AFTER else None

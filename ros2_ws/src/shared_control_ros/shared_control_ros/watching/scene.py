@@ -25,11 +25,11 @@ class Scene:
     """The ball's offset from the middle of the tray along its x axis, m; positive: left in the picture."""
     ball_height: float | None = None
     """Of the ball's centre above the tray's frame, m."""
-    m_y_human: float = 0.0
+    human: float = 0.0
     """N m"""
-    m_y_agent: float | None = None
+    agent: float | None = None
     """N m"""
-    m_y_applied: float | None = None
+    applied: float | None = None
     """The sum as the controller applies it, N m."""
     moment_limit: float = 10.0
     """Bound of |M_yh|, N m; the bars reach to twice that."""
