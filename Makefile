@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SRC := ros2_ws/src
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test lint bench weight colcon clean
+.PHONY: help setup demo session test lint bench weight count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
@@ -15,6 +15,7 @@ help:
 	@echo 'make lint     ruff, mypy, and who may import whom'
 	@echo 'make bench    measurements (out/bench.json)'
 	@echo 'make weight   what the controller alone installs (out/weight.json)'
+	@echo 'make count    the size of the code, and what is tied to one task or robot, at the first version and now'
 	@echo 'make colcon   colcon build and colcon test of the workspace'
 	@echo 'make setup    the environment alone; PYTHON=python3.12 chooses another interpreter'
 	@echo 'make clean    remove the environment and what was built'
@@ -44,6 +45,9 @@ lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+
+count: setup
+	$(BIN)/python tools/count.py $(ARGS)
 
 weight: setup
 	$(BIN)/python tools/weight.py --output out/weight.json
