@@ -56,7 +56,8 @@ def at(commit: str) -> dict:
 def now() -> dict:
     """Figures of the working tree."""
     root = Path(__file__).parents[1]
-    files = subprocess.run(['git', 'ls-files'], check=True, capture_output=True, text=True, cwd=root).stdout.splitlines()
+    listed = subprocess.run(['git', 'ls-files'], check=True, capture_output=True, text=True, cwd=root).stdout
+    files = listed.splitlines()
     return count([path for path in files if (root / path).is_file()], lambda path: (root / path).read_text())
 
 
