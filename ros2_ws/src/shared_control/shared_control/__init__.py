@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .robot.posture import GAINS, Q_REFERENCE, Gains
     from .scene import Ball, Box, Scene
     from .tasks.balance import BALANCE, Balance, BalanceState
-    from .tasks.task import Task, TaskState
+    from .tasks.task import Task, TaskState, settled
     from .teaching.device import Device
     from .teaching.profiles import TutorProfile, profile
     from .teaching.tutor import SimulatedTutor
@@ -43,7 +43,8 @@ __all__ = [
     'Box', 'BulletWorld', 'Callbacks', 'ComputedTorqueController', 'Device', 'Episode', 'Evaluation', 'Gains', 'Key',
     'KeyMap', 'Learner', 'LocalPlant', 'PandaModel', 'Person', 'Plant', 'PlantInterrupted', 'PlantState', 'Preset',
     'Scene', 'SharedControlEnv', 'SimulatedTutor', 'Task', 'TaskState', 'TrainingRun', 'TutorProfile', 'World',
-    'as_tested', 'evaluate', 'learn', 'load', 'load_policy', 'names', 'preset', 'profile', 'save_policy', 'train',
+    'as_tested', 'evaluate', 'learn', 'load', 'load_policy', 'names', 'preset', 'profile', 'save_policy', 'settled',
+    'train',
 ]
 
 _NAMES_IN = {
@@ -56,7 +57,7 @@ _NAMES_IN = {
     'shared_control.robot.posture': ('GAINS', 'Gains', 'Q_REFERENCE'),
     'shared_control.scene': ('Ball', 'Box', 'Scene'),
     'shared_control.tasks.balance': ('BALANCE', 'Balance', 'BalanceState'),
-    'shared_control.tasks.task': ('Task', 'TaskState'),
+    'shared_control.tasks.task': ('Task', 'TaskState', 'settled'),
     'shared_control.teaching.device': ('Device',),
     'shared_control.teaching.profiles': ('TutorProfile', 'profile'),
     'shared_control.teaching.tutor': ('SimulatedTutor',),

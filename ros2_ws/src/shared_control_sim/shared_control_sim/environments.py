@@ -5,7 +5,7 @@ from typing import Any
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, load
 from shared_control.teaching.profiles import profile
-from shared_control.teaching.tutor import SimulatedTutor
+from shared_control.teaching.tutor import SimulatedTutor, can_teach
 
 from .local_plant import LocalPlant
 
@@ -22,10 +22,13 @@ def make_env(task: str, tutor: str | None = None, world: str = 'bullet', human_o
         settings: of the task, as its class has them (``episode_seconds``, ``action_scale``, ...).
 
     Raises:
-        ValueError: there is no task, profile or world of that name, or a setting cannot be.
+        ValueError: there is no task, profile or world of that name, a setting cannot be, or there is a tutor and
+            the task has other axes than tutors know.
         TypeError: the task has no such setting.
         ImportError: the world is not installed; the message says what to install.
     """
     chosen = load(TASKS, task)(**settings)
+    if tutor is not None and not can_teach(chosen):
+        raise ValueError(f'simulated tutors do not know the axes of the task {task}')
     person = None if tutor is None else SimulatedTutor(profile(tutor))
     return SharedControlEnv(LocalPlant(chosen, person, world), chosen, human_only)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..keys import KeyMap
 from ..plant import PlantState
+from ..rates import POLICY_PERIOD
 from ..robot.model import PandaModel
 from ..scene import Scene
 
@@ -91,6 +92,13 @@ class Task(ABC):
 
 OBSERVATION_BOUND = 20.0
 """Observations are clipped to this."""
+SETTLED_SECONDS = 3.0
+"""The end of an episode, over which a settled ball is judged, s."""
+
+
+def settled(track: np.ndarray) -> float:
+    """Mean magnitude over the last 3 s of a track at the policy's rate."""
+    return float(np.abs(track[-round(SETTLED_SECONDS / POLICY_PERIOD):]).mean())
 
 
 class BallStarts:
