@@ -34,7 +34,7 @@ class Stick:
 
     def update(self, source: str, axes: Sequence[float], buttons: Sequence[int]) -> bool:
         """See Device."""
-        expected = 1 + max(axis for axis, *_ in self._sticks)
+        expected = 1 + max((axis for axis, *_ in self._sticks), default=-1)
         values = np.asarray(axes, float)
         if len(values) < expected or not (np.abs(values[:expected]) <= 1.0).all():
             raise ValueError(f'expected {expected} axes of -1 to 1 or more, got {list(axes)}')

@@ -14,12 +14,12 @@ from shared_control.tasks.task import OBSERVATION_BOUND
 class TwoAxisState:
     """What the task looks at: along base x and y, SI units."""
 
-    error: np.ndarray
-    """Tray centre - ball, (2,), m"""
-    ball_velocity: np.ndarray
-    """(2,), m/s"""
-    lean: np.ndarray
-    """Where the tray's normal leans, (2,): the sines of its tilts; the ball rolls there."""
+    error: tuple[float, float]
+    """Tray centre - ball, m"""
+    ball_velocity: tuple[float, float]
+    """m/s"""
+    lean: tuple[float, float]
+    """Where the tray's normal leans, and so where the ball rolls: the sines of the tilts"""
     ball_height: float
     """Above the base, m"""
     manipulability: float
@@ -27,12 +27,12 @@ class TwoAxisState:
     @property
     def position_error(self) -> float:
         """Distance from the middle, m."""
-        return float(np.linalg.norm(self.error))
+        return math.hypot(*self.error)
 
     @property
     def velocity(self) -> float:
         """Speed of the ball, m/s."""
-        return float(np.linalg.norm(self.ball_velocity))
+        return math.hypot(*self.ball_velocity)
 
 
 @dataclass(frozen=True)
@@ -70,13 +70,16 @@ class TwoAxis(Task):
     def describe(self, state: PlantState, model: PandaModel) -> TwoAxisState:
         """See Task."""
         position, rotation = model.tray_pose(state.q)
+        ball_x, ball_y, ball_z = state.ball_position
         return TwoAxisState(
-            position[:2] - state.ball_position[:2], np.array(state.ball_velocity[:2]), rotation[:2, 2].copy(),
-            state.ball_position[2], manipulability(model.jacobian(state.q)))
+            error=(float(position[0]) - ball_x, float(position[1]) - ball_y),
+            ball_velocity=state.ball_velocity[:2], lean=(float(rotation[0, 2]), float(rotation[1, 2])),
+            ball_height=ball_z, manipulability=manipulability(model.jacobian(state.q)))
 
     def observe(self, state: TwoAxisState) -> np.ndarray:
         """See Task: errors, velocities and lean, scaled."""
-        scaled = np.concatenate([state.error / 0.1, state.ball_velocity / 0.15, state.lean / 0.05])
+        raw = np.array([*state.error, *state.ball_velocity, *state.lean])
+        scaled = raw / [0.1, 0.1, 0.15, 0.15, 0.05, 0.05]
         return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
 
     def reward_terms(self, state: TwoAxisState) -> dict[str, float]:

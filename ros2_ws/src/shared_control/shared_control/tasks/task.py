@@ -14,7 +14,10 @@ from ..scene import Scene
 
 
 class TaskState(Protocol):
-    """What a task makes of the plant, SI units; a task's own state has more."""
+    """What a task makes of the plant, SI units; a task's own state has more.
+
+    Numbers, or tuples of them: Gymnasium compares states, as parts of ``info``.
+    """
 
     position_error: float
     """Goal minus ball, m: signed along the axis of a task with one, a distance (0 or more) with two."""
