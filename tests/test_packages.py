@@ -41,11 +41,18 @@ def setup_arguments(package):
     return found
 
 
+class WithoutTypeChecking(ast.NodeTransformer):
+    """Leaves out what only a type checker imports."""
+
+    def visit_If(self, node):
+        return node.orelse if ast.unparse(node.test) == 'TYPE_CHECKING' else self.generic_visit(node)
+
+
 def imported(package):
     """Top-level modules that a package imports, the standard library's and its own left out."""
     names = set()
     for path in [*(package / package.name).rglob('*.py'), *(package / 'launch').glob('*.py')]:
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(WithoutTypeChecking().visit(ast.parse(path.read_text()))):
             if isinstance(node, ast.Import):
                 names |= {alias.name.split('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
@@ -106,6 +113,11 @@ def test_pip_installs_what_is_imported(package):
             assert module.replace('_', '-') in requires
         elif not is_ros(module) or module == 'rclpy':
             assert distributions.get(module, module).replace('_', '-') in requires
+
+
+def test_type_checkers_see_its_types(package):
+    assert (package / package.name / 'py.typed').is_file()
+    assert "['py.typed'" in (package / 'setup.py').read_text()
 
 
 def test_the_tools_know_all_packages():

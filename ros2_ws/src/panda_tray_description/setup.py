@@ -8,7 +8,7 @@ setup(
     name=package_name,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
-    package_data={'panda_tray_description': ['urdf/*', 'meshes/LICENSE.txt', 'meshes/visual/*']},
+    package_data={'panda_tray_description': ['py.typed', 'urdf/*', 'meshes/LICENSE.txt', 'meshes/visual/*']},
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),

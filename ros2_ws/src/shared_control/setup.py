@@ -21,5 +21,6 @@ setup(
     entry_points={
         'console_scripts': ['shared-control = shared_control.cli:main'],
         'shared_control.tasks': ['balance = shared_control.tasks.balance:Balance'],
+        'shared_control.devices': ['keys = shared_control.teaching.key_device:KeyDevice'],
     },
 )

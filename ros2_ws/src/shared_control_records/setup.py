@@ -7,6 +7,7 @@ setup(
     version='0.1.0',
     packages=find_packages(exclude=['test']),
     package_data={
+        package_name: ['py.typed'],
         'shared_control_records.session': ['page.html', 'page.css'],
         'shared_control_records.study_report': ['study.html'],
     },

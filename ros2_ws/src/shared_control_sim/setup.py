@@ -6,12 +6,13 @@ setup(
     name=package_name,
     version='0.1.0',
     packages=find_packages(exclude=['test']),
+    package_data={package_name: ['py.typed']},
     data_files=[
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
     ],
     install_requires=[
-        'panda_tray_description', 'shared_control', 'numpy', 'pybullet',
+        'panda_tray_description', 'shared_control', 'numpy', 'gymnasium', 'pybullet',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,

@@ -1,10 +1,12 @@
 """Tasks, worlds, learners, devices and robots by name, from this and from other people's packages.
 
-A package adds one by an entry point of the group, under its name, and touches no file of ours (docs/how-to).
+A package adds one by an entry point of the group, under its name, and touches no file of ours (docs/how_to).
 """
 
 from importlib.metadata import entry_points
 from typing import Any
+
+from .extras import missing
 
 TASKS = 'shared_control.tasks'
 """Classes of tasks (:class:`shared_control.tasks.task.Task`)."""
@@ -26,9 +28,13 @@ def load(group: str, name: str) -> Any:
 
     Raises:
         ValueError: there is nothing of that name; the message lists the names.
+        ImportError: what it needs is not installed; the message says what to install.
     """
+    kind = group.rpartition('.')[2].removesuffix('s')
     for entry_point in entry_points(group=group):
         if entry_point.name == name:
-            return entry_point.load()
-    kind = group.rpartition('.')[2].removesuffix('s')
+            try:
+                return entry_point.load()
+            except ModuleNotFoundError as error:
+                raise missing(f'the {kind} {name!r}', error) from error
     raise ValueError(f'no {kind} {name!r}; there are {", ".join(names(group)) or "none"}')

@@ -38,4 +38,4 @@ class World(Protocol):
         """One tick without a command: the joints' brakes hold them."""
 
     def close(self) -> None:
-        """Free the physics engine."""
+        """Free the physics engine; it may be free already."""

@@ -72,7 +72,9 @@ NODES = (
         **_of_the_task(s.settings.preset), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
     SessionNode('panda_sim_node', lambda s: {
         'task': _of_the_task(s.settings.preset)['task'], 'seed': s.settings.seed}, Role.CONTROL_LOOP),
-    SessionNode('teleop_key_node', lambda s: {'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
+    SessionNode('teleop_key_node', lambda s: {
+        'task': _of_the_task(s.settings.preset)['task'],
+        'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
     SessionNode('sim_tutor_node', lambda s: {'profile': s.settings.profile, 'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
                 tutor='page'),

@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 from shared_control.rates import POLICY_PERIOD
-from shared_control.tasks.balance.task import settled
-from shared_control.tasks.task import Task
+from shared_control.tasks.task import Task, settled
 
 
 @dataclass(eq=False)

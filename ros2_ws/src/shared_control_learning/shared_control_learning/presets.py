@@ -22,6 +22,8 @@ class Preset(ABC):
     task: Task
     settings: Any
     """A frozen dataclass of everything that can be set, kept with every policy."""
+    taught: bool = True
+    """Whether somebody is meant to be at the keys."""
 
     @abstractmethod
     def make(self, seed: int = 0) -> 'Learner':
@@ -48,7 +50,7 @@ THESIS_PPO = PpoPreset('thesis', THESIS, PpoLearnerSettings(PpoSettings(
 """The human's moment is a part of the environment and nothing else (3.3, 3.4); the text gives no settings of PPO, so
 they are those of Stable-Baselines3."""
 AUTONOMOUS = PpoPreset('autonomous', BALANCE, PpoLearnerSettings(PpoSettings(
-    initial_std=0.6, std_decay=0.95, noise_seconds=0.5, learning_rate=1e-2)))
+    initial_std=0.6, std_decay=0.95, noise_seconds=0.5, learning_rate=1e-2)), taught=False)
 """No human; tuned for a robot that nobody teaches."""
 
 

@@ -9,13 +9,14 @@ from pathlib import Path
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, load, names
 from shared_control.run_folder import RunFolder
 from shared_control.teaching.profiles import PROFILES, profile
+from shared_control.teaching.tutor import can_teach
 from tqdm import tqdm
 
 from .callbacks import Callbacks
 from .episode import Episode
 from .episode_table import TABLE_NAME
 from .policy_file import POLICY_NAME
-from .presets import preset
+from .presets import Preset, preset
 from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, read_run, train
 
 
@@ -29,8 +30,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--preset', choices=names(LEARNERS), default='coached', help='what is learned, and how')
     parser.add_argument('--task', choices=names(TASKS), help='default: the one that the preset was made for')
     parser.add_argument('--world', choices=names(WORLDS), default='bullet', help='the physics (default: bullet)')
-    parser.add_argument('--tutor', choices=(*PROFILES, 'none'), help='simulated tutor (default: expert; none for the '
-                        'preset autonomous)')
+    parser.add_argument('--tutor', choices=(*PROFILES, 'none'), help='simulated tutor (default: expert; none for a '
+                        'preset that nobody teaches, and for a task that tutors do not know)')
     parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
     parser.add_argument('--seed', type=int, default=0, help='of everything random (default: 0)')
     parser.add_argument('--episodes', type=int, default=20, help='at most so many (default: 20)')
@@ -48,20 +49,20 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
-    _check_options(args)
+    chosen = preset(args.preset)
+    if args.task:
+        chosen = replace(chosen, task=load(TASKS, args.task)())
+    _check_options(args, chosen)
     folder = _claim_folder(args)
     try:
-        return _train(args)
+        return _train(args, chosen)
     finally:
         folder.release()
 
 
-def _train(args: argparse.Namespace) -> int:
-    """Train, and tell what came of it; the exit code."""
-    chosen = preset(args.preset)
-    if args.task:
-        chosen = replace(chosen, task=load(TASKS, args.task)())
-    tutor = args.tutor or ('none' if args.preset == 'autonomous' else 'expert')
+def _train(args: argparse.Namespace, chosen: Preset) -> int:
+    """Train, and print what came of it; the exit code."""
+    tutor = args.tutor or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
     done = read_run(args.output).episodes if args.resume else 0
     try:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
@@ -76,11 +77,12 @@ def _train(args: argparse.Namespace) -> int:
     return 0 if result.skilled is not None or not result.tests else 1
 
 
-def _check_options(args: argparse.Namespace) -> None:
+def _check_options(args: argparse.Namespace, chosen: Preset) -> None:
+    """Refuse numbers and combinations that cannot be."""
     if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
         raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
-    if args.preset == 'autonomous' and args.tutor not in (None, 'none'):
-        raise ValueError('the preset autonomous has no tutor: leave --tutor out, or choose another preset')
+    if not chosen.taught and args.tutor not in (None, 'none'):
+        raise ValueError(f'the preset {args.preset} has no tutor: leave --tutor out, or choose another preset')
 
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:

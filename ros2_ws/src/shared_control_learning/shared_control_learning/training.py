@@ -11,7 +11,7 @@ from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
 from shared_control.teaching.profiles import TutorProfile
-from shared_control.teaching.tutor import SimulatedTutor
+from shared_control.teaching.tutor import SimulatedTutor, can_teach
 from shared_control_sim.local_plant import LocalPlant
 from stable_baselines3.common.logger import Logger, configure
 
@@ -99,7 +99,10 @@ def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, 
     Raises:
         TrainingError: ``folder`` holds another run.
         PolicyFileError: ``folder`` holds an unusable policy.
+        ValueError: there is a tutor, and the task has other axes than tutors know.
     """
+    if tutor is not None and not can_teach(preset.task):
+        raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     run = TrainingRun(preset.name, None if tutor is None else asdict(tutor), seed, human_only)
     learner = preset.make(seed)
     if folder is not None:

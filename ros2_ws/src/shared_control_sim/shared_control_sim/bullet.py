@@ -133,5 +133,6 @@ class BulletWorld:
         pybullet.stepSimulation(self.client)
 
     def close(self) -> None:
-        """Free the physics server."""
-        pybullet.disconnect(self.client)
+        """See :class:`World`."""
+        if pybullet.isConnected(self.client):
+            pybullet.disconnect(self.client)

@@ -1,4 +1,4 @@
-"""Keyboard teleoperation: turns the keys on /human/keys into M_yh on /human/target_wrench (50 Hz).
+"""Teleoperation: turns the keys on /human/keys, or another device, into M_h on /human/target_wrench (50 Hz).
 
 With a terminal it reads the keys there as well and shows the lesson: arrows or a/d tip the tray, space lets go,
 q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves the ball to the left of the picture.
@@ -7,7 +7,10 @@ q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE
+from shared_control.plugins import DEVICES, TASKS, load, names
+from shared_control.tasks.task import Task
+from shared_control.teaching.device import Device
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -18,12 +21,14 @@ from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.wrenches import base_wrench, set_moment
 
 from .panel import Panel
-from .sources import KeySources
+from .sources import Sources
 from .terminal import NoTerminal, Terminal
 from .ticker import Ticker
 
 TICKS_PER_POLL = 5
 """How often services are looked at."""
+KEYS_DEVICE = 'keys'
+"""The device that a terminal's keys are states of."""
 
 
 class TeleopKeyNode:
@@ -31,10 +36,14 @@ class TeleopKeyNode:
 
     def __init__(self) -> None:
         self.node = node = Node('teleop_key_node')
+        task = declare(node, 'task', 'balance', 'What is taught: axes and keys.', choices=names(TASKS))
+        self._device = declare(
+            node, 'device', KEYS_DEVICE, 'What the person holds in the hand.', choices=names(DEVICES))
         keystroke = declare(
             node, 'keystroke', KEYSTROKE, 'Change of M_yh at one press.', unit='N m', minimum=0.0, maximum=200.0)
         self._moment_limit = declare(
-            node, 'moment_limit', HUMAN_MOMENT_LIMIT, 'Bound of |M_yh|.', unit='N m', minimum=0.1, maximum=200.0)
+            node, 'moment_limit', HUMAN_MOMENT_LIMIT, 'Bound of |M_yh|, and about each axis of a task with several.',
+            unit='N m', minimum=0.1, maximum=200.0)
         self._timeout = declare(
             node, 'source_timeout', 0.5, 'A source of keys that pressed and is silent for longer: M_yh goes to zero.',
             unit='s', minimum=0.1, maximum=10.0)
@@ -51,7 +60,10 @@ class TeleopKeyNode:
 
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
-        self._sources = KeySources(KeyMoment(step=keystroke, limit=self._moment_limit), self._timeout)
+        self._task: Task = load(TASKS, task)()
+        device: Device = load(DEVICES, self._device)(self._task, keystroke, self._moment_limit)
+        self._sources = Sources(device, self._timeout)
+        self._none = np.zeros(len(self._task.axes))
         self._wrench = base_wrench()
         self._publisher = node.create_publisher(
             contract.HUMAN_WRENCH.msg_type, contract.HUMAN_WRENCH.name, contract.HUMAN_WRENCH.qos)
@@ -71,17 +83,18 @@ class TeleopKeyNode:
         except NoTerminal as reason:
             self.node.get_logger().info(f'no terminal ({reason}): {serves}')
             return None
-        return Panel(self.node, terminal, self._rate, self._frame_rate, self._moment_limit, self._characters)
+        keys = self._task.keys if self._device == KEYS_DEVICE else {}
+        return Panel(self.node, terminal, self._rate, self._frame_rate, self._moment_limit, self._characters, keys)
 
     def run(self, stop: Stop) -> None:
-        """Turn keys into M_yh until told to stop."""
+        """Turn what the person does into M_h until told to stop."""
         while not stop.requested:
             now_ns = self._ticker.wait()
             if self._panel is not None:
                 self._serve_panel(self._panel, now_ns)
             self._follow_lesson()
             self._hear_keys(now_ns)
-            self._publish(self._sources.m_y, now_ns)
+            self._publish(self._sources.moment, now_ns)
             self._diagnostics.tick()
             if self._panel is not None:
                 self._panel.draw(self._sources, self._lesson)
@@ -94,7 +107,7 @@ class TeleopKeyNode:
     def _serve_panel(self, panel: Panel, now_ns: int) -> None:
         if panel.terminal.suspend_requested:
             self._sources.release()
-            self._publish(0.0, now_ns)
+            self._publish(self._none, now_ns)
             panel.terminal.suspend()
             self._diagnostics.skip()
         panel.read(now_ns)
@@ -115,7 +128,7 @@ class TeleopKeyNode:
         while (joy := self._keys.take()) is not None:
             source = joy.header.frame_id
             try:
-                self._sources.hear(source, joy.buttons, now_ns)
+                self._sources.hear(source, joy.axes, joy.buttons, now_ns)
             except ValueError as error:
                 text = f'dropped a message of {source!r} on {self._keys.topic_name}: {error}'
                 self.node.get_logger().error(text, throttle_duration_sec=1.0)
@@ -130,21 +143,21 @@ class TeleopKeyNode:
         if self._panel is not None:
             self._panel.tell(text)
 
-    def _publish(self, m_y: float, now_ns: int) -> None:
+    def _publish(self, moment: np.ndarray, now_ns: int) -> None:
         set_ns(self._wrench.header.stamp, now_ns)
-        set_moment(self._wrench, np.array([m_y]))
+        set_moment(self._wrench, moment, self._task.axes)
         self._publisher.publish(self._wrench)
 
     def _report(self) -> None:
         if self._lesson.forget_if_over():
             self._sources.release()
             self._sources.is_active = True
-        self._diagnostics.publish({}, m_y_human=self._sources.m_y)
+        self._diagnostics.publish({}, moment=self._sources.moment.tolist())
 
     def close(self) -> None:
         """Publish zero and put the terminal back as it was."""
         try:
-            self._publish(0.0, self.node.get_clock().now().nanoseconds)
+            self._publish(self._none, self.node.get_clock().now().nanoseconds)
             self._publisher.wait_for_all_acked(Duration(nanoseconds=200_000_000))
         finally:
             if self._panel is not None:

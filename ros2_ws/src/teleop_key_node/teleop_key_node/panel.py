@@ -6,7 +6,7 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import BUTTONS, Key
+from shared_control.keys import BUTTONS, Key, KeyMap
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.lesson import Lesson
@@ -16,12 +16,13 @@ from shared_control_ros.watching.scene import Scene
 
 from .keyboard import Keyboard, Stroke
 from .screen import render
-from .sources import KeySources
+from .sources import Sources
 from .terminal import Terminal
 
 SOURCE = 'terminal'
 """The frame_id of the terminal's keys."""
-_KEYS = {Stroke.LEFT: Key.LEFT, Stroke.RIGHT: Key.RIGHT, Stroke.SPACE: Key.SPACE}
+_KEYS = {Stroke.LEFT: Key.LEFT, Stroke.RIGHT: Key.RIGHT, Stroke.UP: Key.UP, Stroke.DOWN: Key.DOWN,
+         Stroke.SPACE: Key.SPACE}
 _REPEAT_EVERY = 0.08
 """The state of the keys is repeated after this, s."""
 _MESSAGE_FOR = 8.0
@@ -43,14 +44,17 @@ class Panel:
         frame_rate: of the screen, Hz.
         moment_limit: bound of |M_yh|, N m.
         characters: ``auto``, ``unicode`` or ``ascii``.
+        keys: what the keys move; none when the person holds another device: then only q, p and the screen are here.
     """
 
     def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, moment_limit: float,
-                 characters: str):
+                 characters: str, keys: KeyMap):
         self.terminal = terminal
-        self._keyboard = Keyboard()
+        known = {*keys, Key.SPACE} if keys else set()
+        self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
+        self._sends_keys = bool(keys)
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * BUTTONS)
+        self._joy = Joy(buttons=[0] * max(BUTTONS, *(key + 1 for key in (*keys, Key.SPACE))))
         self._joy.header.frame_id = SOURCE
         self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
         self._ticks = 0
@@ -78,7 +82,7 @@ class Panel:
         for stroke in strokes:
             self._obey(stroke)
         self._ticks += 1
-        if strokes or self._ticks % self._repeat_ticks == 0:
+        if self._sends_keys and (strokes or self._ticks % self._repeat_ticks == 0):
             self._keys.publish(self._joy)
         self.requests.expire()
 
@@ -96,7 +100,7 @@ class Panel:
         else:
             self.terminal.redraw()
 
-    def draw(self, sources: KeySources, lesson: Lesson) -> None:
+    def draw(self, sources: Sources, lesson: Lesson) -> None:
         """Draw a frame if one is due."""
         now = time.monotonic()
         if now < self._next_frame or not self.terminal.is_entered:
@@ -109,7 +113,7 @@ class Panel:
         self._observer.update(scene)
         self._notice_resumption()
         scene.phase, scene.episode = lesson.phase, lesson.episode
-        scene.human = sources.m_y
+        scene.human = float(sources.moment[0])
         scene.hand = 'you' if sources.last_pressed in ('', SOURCE) else sources.last_pressed
         scene.paused = self.requests.paused
         if now > self._message_until:

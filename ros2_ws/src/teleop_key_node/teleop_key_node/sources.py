@@ -1,36 +1,37 @@
-"""From the keys of several sources to one M_yh."""
+"""From the states of several sources to one moment of the human."""
 
 from collections.abc import Sequence
 
-from shared_control.keys import KeyMoment, KeyPresses
+import numpy as np
+from shared_control.teaching.device import Device
 
 
-class KeySources:
-    """Hears any number of sources of keys; none of them can leave a moment behind.
+class Sources:
+    """Hears any number of sources of a device; none of them can leave a moment behind.
 
     Args:
-        moment: what the presses change.
-        timeout: a source that pressed and is silent for longer takes the moment with it, s.
+        device: what turns their states into the moment.
+        timeout: a source that did something and is silent for longer takes the moment with it, s.
     """
 
-    def __init__(self, moment: KeyMoment, timeout: float):
-        self._moment = moment
+    def __init__(self, device: Device, timeout: float):
+        self._device = device
+        self._size = len(device.moment)
         self._timeout_ns = round(timeout * 1e9)
-        self._presses: dict[str, KeyPresses] = {}
         self._heard_ns: dict[str, int] = {}
         self._holding: set[str] = set()
         self._is_active = True
         self.last_pressed = ''
-        """The source of the latest press."""
+        """The source that last did something."""
 
     @property
-    def m_y(self) -> float:
-        """M_yh, N m."""
-        return float(self._moment.moment[0])
+    def moment(self) -> np.ndarray:
+        """The human's moment, (k,), N m."""
+        return self._device.moment
 
     @property
     def is_active(self) -> bool:
-        """Whether presses count. The moment is zero while they do not."""
+        """Whether the device counts. The moment is zero while it does not."""
         return self._is_active
 
     @is_active.setter
@@ -39,21 +40,25 @@ class KeySources:
         if not active:
             self.release()
 
-    def hear(self, source: str, buttons: Sequence[int], now_ns: int) -> None:
-        """The button states of one source, heard at ``now_ns``.
+    def hear(self, source: str, axes: Sequence[float], buttons: Sequence[int], now_ns: int) -> None:
+        """The state of one source, heard at ``now_ns``.
 
         Raises:
-            ValueError: these are no states of three buttons.
+            ValueError: this is no state of the device.
         """
-        presses = self._presses.setdefault(source, KeyPresses()).update(buttons)
+        acts = self._device.update(source, axes, buttons)
         self._heard_ns[source] = now_ns
         if not self._is_active:
+            self._device.release()
             return
-        for key in presses:
-            self._moment.press(key)
+        moment = self._device.moment
+        if len(moment) != self._size or not np.isfinite(moment).all():  # somebody else's code
+            self.release()
+            raise ValueError(f'the device makes {moment} N m of it')
+        if acts:
             self._holding.add(source)
             self.last_pressed = source
-        if not self._moment.moment.any():
+        if not moment.any():
             self._holding.clear()
 
     def drop_silent(self, now_ns: int) -> list[str]:
@@ -63,13 +68,14 @@ class KeySources:
         """
         silent = [name for name, heard in self._heard_ns.items() if not 0 <= now_ns - heard <= self._timeout_ns]
         for name in silent:
-            del self._heard_ns[name], self._presses[name]
+            del self._heard_ns[name]
+            self._device.forget(name)
         gone = [name for name in silent if name in self._holding]
         if gone:
             self.release()
         return gone
 
     def release(self) -> None:
-        """M_yh = 0. A key that is held down at this moment counts again when it is pressed again."""
-        self._moment.release()
+        """Let go of the device: no moment."""
+        self._device.release()
         self._holding.clear()

@@ -1,9 +1,10 @@
 """Bytes to strokes, and states of several sources to one moment."""
 
 import pytest
-from shared_control.keys import KeyMoment
+from shared_control.tasks.balance import BALANCE
+from shared_control.teaching.key_device import KeyDevice
 from teleop_key_node.keyboard import Keyboard, Stroke
-from teleop_key_node.sources import KeySources
+from teleop_key_node.sources import Sources
 
 SECOND = 1_000_000_000
 
@@ -24,42 +25,42 @@ def test_strokes(data, strokes):
 
 
 def test_a_silent_source_is_forgotten_and_others_stay():
-    sources = KeySources(KeyMoment(), timeout=0.5)
-    sources.hear('a', [1, 0, 0], 0)
-    sources.hear('b', [0, 0, 0], SECOND)
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    sources.hear('a', [], [1, 0, 0], 0)
+    sources.hear('b', [], [0, 0, 0], SECOND)
     assert sources.drop_silent(SECOND) == ['a']
-    assert sources.m_y == 0.0
-    sources.hear('b', [1, 0, 0], SECOND)
-    sources.hear('c', [0, 0, 0], SECOND)
-    sources.hear('b', [1, 0, 0], 2 * SECOND)
+    assert sources.moment[0] == 0.0
+    sources.hear('b', [], [1, 0, 0], SECOND)
+    sources.hear('c', [], [0, 0, 0], SECOND)
+    sources.hear('b', [], [1, 0, 0], 2 * SECOND)
     assert sources.drop_silent(2 * SECOND) == [], 'c never pressed'
-    assert sources.m_y == 5.0
+    assert sources.moment[0] == 5.0
 
 
 def test_whoever_left_before_the_moment_was_zero_takes_nothing_away():
-    sources = KeySources(KeyMoment(), timeout=0.5)
-    sources.hear('page', [1, 0, 0], 0)
-    sources.hear('terminal', [0, 0, 1], 0)
-    sources.hear('terminal', [0, 1, 0], SECOND // 2)
-    sources.hear('terminal', [0, 1, 0], SECOND)
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    sources.hear('page', [], [1, 0, 0], 0)
+    sources.hear('terminal', [], [0, 0, 1], 0)
+    sources.hear('terminal', [], [0, 1, 0], SECOND // 2)
+    sources.hear('terminal', [], [0, 1, 0], SECOND)
     assert sources.drop_silent(SECOND) == []
-    assert sources.m_y == -5.0
+    assert sources.moment[0] == -5.0
 
 
 def test_a_clock_that_jumps_back_makes_every_source_silent():
-    sources = KeySources(KeyMoment(), timeout=0.5)
-    sources.hear('a', [1, 0, 0], 9 * SECOND)
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    sources.hear('a', [], [1, 0, 0], 9 * SECOND)
     assert sources.drop_silent(SECOND) == ['a']
-    assert sources.m_y == 0.0
+    assert sources.moment[0] == 0.0
 
 
 def test_a_key_held_over_the_start_of_an_episode_is_no_press():
-    sources = KeySources(KeyMoment(), timeout=0.5)
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
     sources.is_active = False
-    sources.hear('a', [1, 0, 0], 0)
+    sources.hear('a', [], [1, 0, 0], 0)
     sources.is_active = True
-    sources.hear('a', [1, 0, 0], 0)
-    assert sources.m_y == 0.0
-    sources.hear('a', [0, 0, 0], 0)
-    sources.hear('a', [1, 0, 0], 0)
-    assert sources.m_y == 5.0
+    sources.hear('a', [], [1, 0, 0], 0)
+    assert sources.moment[0] == 0.0
+    sources.hear('a', [], [0, 0, 0], 0)
+    sources.hear('a', [], [1, 0, 0], 0)
+    assert sources.moment[0] == 5.0

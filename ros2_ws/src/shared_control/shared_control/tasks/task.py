@@ -8,12 +8,16 @@ import numpy as np
 
 from ..keys import KeyMap
 from ..plant import PlantState
+from ..rates import POLICY_PERIOD
 from ..robot.model import PandaModel
 from ..scene import Scene
 
 
 class TaskState(Protocol):
-    """What a task makes of the plant, SI units; a task's own state has more."""
+    """What a task makes of the plant, SI units; a task's own state has more.
+
+    Numbers, or tuples of them: Gymnasium compares states, as parts of ``info``.
+    """
 
     position_error: float
     """Goal minus ball, m: signed along the axis of a task with one, a distance (0 or more) with two."""
@@ -91,6 +95,13 @@ class Task(ABC):
 
 OBSERVATION_BOUND = 20.0
 """Observations are clipped to this."""
+SETTLED_SECONDS = 3.0
+"""The end of an episode, over which a settled ball is judged, s."""
+
+
+def settled(track: np.ndarray) -> float:
+    """Mean magnitude over the last 3 s of a track at the policy's rate."""
+    return float(np.abs(track[-round(SETTLED_SECONDS / POLICY_PERIOD):]).mean())
 
 
 class BallStarts:

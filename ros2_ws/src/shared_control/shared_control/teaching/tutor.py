@@ -11,6 +11,7 @@ from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key, KeyMoment
 from ..plant import PlantState
 from ..rates import POLICY_PERIOD
 from ..robot.model import PandaModel, pitch
+from ..tasks.task import Task
 from .profiles import TutorProfile, in_episode
 
 BALL_ACCELERATION = 5.0 / 7.0 * 9.81
@@ -42,6 +43,11 @@ _ANY_KEY: Any = [None, Key.LEFT, Key.RIGHT, Key.SPACE]
 
 ROUNDING = 1e-6
 """Of times, s."""
+
+
+def can_teach(task: Task) -> bool:
+    """Whether simulated tutors know how to: they hold the keys of one moment, about base y."""
+    return task.axes == (4,)
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ import numpy as np
 from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
 from shared_control.seeds import episode_seed
-from shared_control.tasks.balance.task import settled
-from shared_control.tasks.task import Task
+from shared_control.tasks.task import Task, settled
 
 from ..callbacks import Callbacks
 from ..episode import Episode

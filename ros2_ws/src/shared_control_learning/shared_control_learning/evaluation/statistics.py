@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from shared_control.tasks.balance.task import settled
+from shared_control.tasks.task import settled
 
 from .result import ProtocolResult
 

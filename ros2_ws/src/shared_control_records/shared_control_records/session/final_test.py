@@ -9,7 +9,7 @@ from pydantic import TypeAdapter, ValidationError
 from shared_control.files import write_atomically
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.balance import BALANCE
-from shared_control.tasks.balance.task import settled
+from shared_control.tasks.task import settled
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import Evaluation
 from shared_control_learning.wrong_content import what_is_wrong

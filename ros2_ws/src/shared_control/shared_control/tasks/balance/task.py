@@ -8,15 +8,12 @@ import numpy as np
 
 from ...keys import LEFT_AND_RIGHT, KeyMap
 from ...plant import PlantState
-from ...rates import POLICY_PERIOD
 from ...robot.model import PandaModel, manipulability, pitch
 from ...scene import Box, Scene
-from ..task import OBSERVATION_BOUND, Task
+from ..task import OBSERVATION_BOUND, Task, settled
 
 BALL_START_RANGE = (-0.6, -0.3)
 """Where the ball is dropped, x in the base frame, m (appendix)."""
-SETTLED_SECONDS = 3.0
-"""The end of an episode, over which a settled ball is judged, s."""
 
 TRAY = Scene(
     half_length=0.2, half_width=0.05, surface=0.006, wall=0.01, goal_radius=0.02,
@@ -161,8 +158,3 @@ class Balance(Task):
         """The ball was kept, and is at rest in the centre at the end (4.2)."""
         return (not failed and settled(position_error) < self.scene.goal_radius
                 and settled(velocity) < self.velocity_max)
-
-
-def settled(track: np.ndarray) -> float:
-    """Mean magnitude over the last 3 s of a track at the policy's rate."""
-    return float(np.abs(track[-round(SETTLED_SECONDS / POLICY_PERIOD):]).mean())

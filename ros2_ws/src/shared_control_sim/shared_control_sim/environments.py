@@ -1,0 +1,34 @@
+"""What ``gymnasium.make`` makes: a task's environment in this process."""
+
+from typing import Any
+
+from shared_control.env import SharedControlEnv
+from shared_control.plugins import TASKS, load
+from shared_control.teaching.profiles import profile
+from shared_control.teaching.tutor import SimulatedTutor, can_teach
+
+from .local_plant import LocalPlant
+
+
+def make_env(task: str, tutor: str | None = None, world: str = 'bullet', human_only: bool = False,
+             **settings: Any) -> SharedControlEnv:
+    """The environment of the task called ``task``.
+
+    Args:
+        task: name (entry point of the group ``shared_control.tasks``).
+        tutor: profile of a simulated tutor (``expert``, ``low``, ...); nobody at the keys when None.
+        world: name of the physics (entry point of the group ``shared_control.worlds``).
+        human_only: the agent's moment is not applied.
+        settings: of the task, as its class has them (``episode_seconds``, ``action_scale``, ...).
+
+    Raises:
+        ValueError: there is no task, profile or world of that name, a setting cannot be, or there is a tutor and
+            the task has other axes than tutors know.
+        TypeError: the task has no such setting.
+        ImportError: the world is not installed; the message says what to install.
+    """
+    chosen = load(TASKS, task)(**settings)
+    if tutor is not None and not can_teach(chosen):
+        raise ValueError(f'simulated tutors do not know the axes of the task {task}')
+    person = None if tutor is None else SimulatedTutor(profile(tutor))
+    return SharedControlEnv(LocalPlant(chosen, person, world), chosen, human_only)
