@@ -18,8 +18,7 @@ SOURCES = Path('ros2_ws') / 'src'
 BASE = ('panda_tray_description', 'shared_control')
 """What everybody needs: robot, controller, tasks."""
 EXTRAS = {
-    'ros': ('shared_control_ros', 'torque_ctrl_node', 'teleop_key_node', 'panda_bridge_node', 'sim_tutor_node',
-            'robot_view_node'),
+    'ros': ('shared_control_ros', 'torque_ctrl_node', 'teleop_key_node', 'shared_control_nodes'),
     'sim': ('shared_control_sim',),
     'learn': ('shared_control_sim', 'shared_control_learning'),
     'study': ('shared_control_sim', 'shared_control_learning', 'shared_control_records'),

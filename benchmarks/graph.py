@@ -20,7 +20,7 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from shared_control_ros import contract
-from shared_control_ros.processes import node_environment
+from shared_control_ros.processes import node_environment, node_module
 
 ROUNDS = 3
 SECONDS = 8.0
@@ -39,7 +39,7 @@ def ticks(seconds: float = SECONDS) -> dict[str, float]:
     """p50 and p99 of the graph's tick, ms, as the simulator reports them after ``seconds``."""
     domain = next(DOMAINS)
     environment = {**node_environment(), 'ROS_DOMAIN_ID': str(domain)}
-    nodes = [subprocess.Popen([sys.executable, '-m', f'{name}.node', '--ros-args', '-p', *parameters],
+    nodes = [subprocess.Popen([sys.executable, '-m', node_module(name), '--ros-args', '-p', *parameters],
                               env=environment, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
              for name, parameters in (('panda_sim_node', ['paced:=false']), ('torque_ctrl_node', ['enabled:=true']))]
     try:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from shared_control_bringup import parameters
 from shared_control_learning.episode_table import read_rows
-from shared_control_ros.processes import leave_with_the_parent
+from shared_control_ros.processes import leave_with_the_parent, node_module
 from shared_control_testing.nodes import *  # noqa: F403
 from shared_control_testing.terminal import Terminal
 
@@ -30,7 +30,7 @@ class Session:
         children = Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
         for child in children:
             command = Path(f'/proc/{child}/cmdline')
-            if command.exists() and f'{name}.node' in command.read_text().split('\0'):
+            if command.exists() and node_module(name) in command.read_text().split('\0'):
                 return int(child)
         return 0
 

@@ -17,6 +17,7 @@ from shared_control_bringup.graph import Role, nodes_of, overrides
 from shared_control_bringup.node_process import REAL_TIME_PRIORITY
 from shared_control_bringup.parameters import load
 from shared_control_bringup.settings import Settings
+from shared_control_ros.processes import node_module
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / 'ros2_ws' / 'src'
@@ -119,10 +120,11 @@ def test_the_services_are_a_session_with_a_simulated_tutor():
             assert found[name] == value, f'{node.name}: {name}'
 
 
-def declared_defaults(package):
+def declared_defaults(node):
     """Default values of a node's parameters, as far as they are literals."""
     found = {}
-    for path in (SOURCES / package / package).glob('*.py'):
+    package, *rest = node_module(node).split('.')
+    for path in (SOURCES / package / package).joinpath(*rest).parent.glob('*.py'):
         for call in ast.walk(ast.parse(path.read_text())):
             if isinstance(call, ast.Call) and ast.unparse(call.func) == 'declare' and isinstance(
                     call.args[2], ast.Constant):

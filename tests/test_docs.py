@@ -31,7 +31,7 @@ def test_a_page_names_the_variable_that_restricts_dds(page, monkeypatch):
 
 
 def test_the_errors_of_troubleshooting_are_those_of_the_code():
-    nodes = (node for path in [*SOURCES.glob('*/*/*.py'), ROOT / 'tools' / 'check_machine.py']
+    nodes = (node for path in [*SOURCES.glob('*/*/**/*.py'), ROOT / 'tools' / 'check_machine.py']
              for node in ast.walk(ast.parse(path.read_text())))
     strings = ' '.join(node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str))
     quoted = re.findall(r'^> (.+)$', (ROOT / 'docs' / 'troubleshooting.md').read_text(), re.MULTILINE)

@@ -10,8 +10,8 @@ import pybullet
 import pytest
 from builtin_interfaces.msg import Time
 from panda_tray_description import URDF_PATH
-from robot_view_node.transforms import arm_transforms, ball_transform
 from shared_control.robot.model import PandaModel
+from shared_control_nodes.view.transforms import arm_transforms, ball_transform
 from shared_control_ros import contract
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.stamps import to_ns

@@ -3,6 +3,8 @@
 The mock runs with its jitter and losses, at less than half its pace, since a test machine is no real-time machine.
 """
 
+import time
+
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -161,7 +163,9 @@ class TestOnlyARobot:
         wild = Float64MultiArray(data=[0.0] * 6 + [500.0])
 
         def stopped():
-            publisher.publish(wild)  # another source of torques, against the controller
+            for _ in range(50):  # another source of torques that outdoes the controller
+                publisher.publish(wild)
+                time.sleep(0.0003)
             return mock.said('mode')[-1] == 'reflex'
 
         mock.spin(stopped, 'a reflex stop')

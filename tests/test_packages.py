@@ -127,10 +127,10 @@ def test_the_tools_know_all_packages():
     assert set(tools['mypy']['packages']) == NAMES - {'panda_tray_description'}
 
 
-@pytest.mark.parametrize('node', ['torque_ctrl_node', 'panda_bridge_node'])
+@pytest.mark.parametrize('node', ['torque_ctrl_node.node', 'shared_control_nodes.bridge.node'])
 def test_what_drives_a_robot_loads_nothing_heavy(node):
     heavy = {'torch', 'stable_baselines3', 'gymnasium', 'pybullet', 'mujoco', 'pandas', 'matplotlib', 'scipy',
              'nicegui'}
-    loaded = subprocess.run([sys.executable, '-c', f'import {node}.node, sys; print(*sys.modules)'],
+    loaded = subprocess.run([sys.executable, '-c', f'import {node}, sys; print(*sys.modules)'],
                             capture_output=True, text=True, check=True).stdout.split()
     assert not heavy & {name.split('.')[0] for name in loaded}

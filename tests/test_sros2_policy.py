@@ -1,6 +1,7 @@
 """The SROS2 policy is what its table says, and allows every node what it does, on the running graph."""
 
 import xml.etree.ElementTree as ET
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -10,9 +11,9 @@ from shared_control_ros.sros2_policy import ENCLAVES, policy
 
 COMMITTED = Path(shared_control_ros.__file__).parent / 'config' / 'sros2_policy.xml'
 SOURCES = Path(__file__).parents[1] / 'ros2_ws' / 'src'
-STAND_IN = SOURCES / 'panda_bridge_node' / 'test' / 'stand_in'
+STAND_IN = SOURCES / 'shared_control_nodes' / 'test' / 'stand_in'
 TYPES = {'/' + entry.name.removeprefix('/'): entry.type for entry in (*TOPICS, *SERVICES)}
-NODES = {path.name: {} for path in SOURCES.glob('*_node')}
+NODES = {script.name: {} for script in entry_points(group='console_scripts') if script.name.endswith('_node')}
 
 
 @pytest.fixture(scope='module')

@@ -24,7 +24,7 @@ TIED = {
 OWN_FOLDERS = {
     'axis': ('tasks/balance/', 'teaching/tutor.py', 'shared_control/wrench.py'),
     'geometry': ('tasks/balance/',),
-    'robot': ('robot/', 'panda_tray_description/', 'panda_bridge_node/'),
+    'robot': ('robot/', 'panda_tray_description/', 'shared_control_nodes/bridge/'),
 }
 """Where what is tied belongs. The simulated tutor is a model of somebody who balances a ball by one moment."""
 

@@ -18,5 +18,8 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='PyBullet simulator of the Panda with tray and ball as a ROS 2 node.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['panda_sim_node = panda_sim_node.node:main']},
+    entry_points={'console_scripts': [
+        'panda_sim_node = panda_sim_node.node:main',
+        'mock_panda_node = panda_sim_node.mock:main',
+    ]},
 )

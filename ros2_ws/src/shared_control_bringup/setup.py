@@ -18,8 +18,7 @@ setup(
     install_requires=[
         'shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records',
         'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node',
-        'sim_tutor_node', 'session_recorder_node', 'robot_view_node', 'teach_page_node', 'panda_tray_description',
-        'pyyaml',
+        'shared_control_nodes', 'teach_page_node', 'panda_tray_description', 'rclpy', 'rosbags', 'pyyaml',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
@@ -27,5 +26,8 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='Starts the whole graph: parameter file, launch files, sessions.',
     license='Apache-2.0',
-    entry_points={'shared_control.commands': ['session = shared_control_bringup.session:add_command']},
+    entry_points={
+        'console_scripts': ['session_recorder_node = shared_control_bringup.recorder.node:main'],
+        'shared_control.commands': ['session = shared_control_bringup.session:add_command'],
+    },
 )

@@ -17,7 +17,7 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_sim', 'shared_control_learning', 'numpy', 'pin', 'pydantic', 'rosbags',
-        'mcap', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
+        'mcap', 'zstandard', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
     ],
     extras_require={'test': ['pytest'], 'ray': ['ray']},
     zip_safe=False,

@@ -20,7 +20,7 @@ def start_node(context: LaunchContext) -> list[Node]:
 def generate_launch_description() -> LaunchDescription:
     """See the module."""
     return LaunchDescription([
-        DeclareLaunchArgument('node', choices=list(ALL_NODES), description='Its package and executable.'),
+        DeclareLaunchArgument('node', choices=list(ALL_NODES), description='Its name.'),
         *common_arguments(),
         *environment(),
         in_namespace([OpaqueFunction(function=start_node)]),

@@ -44,7 +44,7 @@ class SessionNode:
     """One node of a session."""
 
     name: str
-    """Of package, executable and node alike."""
+    """Name of the node and of its executable."""
     parameters: Callable[[Session], dict[str, Any]]
     """What it is given on top of the parameter file."""
     role: Role = Role.MEMBER

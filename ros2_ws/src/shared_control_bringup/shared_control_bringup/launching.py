@@ -19,7 +19,7 @@ from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node, PushRosNamespace
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-from shared_control_ros.processes import node_environment
+from shared_control_ros.processes import node_environment, node_module
 
 from .node_process import UNUSABLE
 from .parameters import DEFAULTS
@@ -50,8 +50,8 @@ def environment() -> list[SetEnvironmentVariable]:
             if os.environ.get(name) != value]
 
 
-def graph_node(package: SomeSubstitutionsType, *, parameters: dict[str, Any] | None = None, **options: Any) -> Node:
-    """A node of the graph: package and executable of one name, the parameter file, started again when it dies.
+def graph_node(name: str, *, parameters: dict[str, Any] | None = None, **options: Any) -> Node:
+    """A node of the graph: the executable ``name`` of whichever package has it, started again when it dies.
 
     The file is laid over the defaults, and ``parameters`` over the file; ``options`` go to ``launch_ros.actions.Node``.
     """
@@ -60,7 +60,7 @@ def graph_node(package: SomeSubstitutionsType, *, parameters: dict[str, Any] | N
              for name, value in (parameters or {}).items()}
     files: list[Any] = [str(DEFAULTS), LaunchConfiguration('params_file')]
     return Node(
-        package=package, executable=package, parameters=files + ([given] if given else []),
+        package=node_module(name).partition('.')[0], executable=name, parameters=files + ([given] if given else []),
         respawn=True, respawn_delay=RESPAWN_DELAY, **options)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from shared_control_ros.processes import leave_with_the_parent, node_environment
+from shared_control_ros.processes import leave_with_the_parent, node_environment, node_module
 from shared_control_ros.readiness import READY_FD
 
 REAL_TIME_PRIORITY = 49
@@ -25,7 +25,7 @@ class NodeProcess:
     """A node, its parameter file and its log.
 
     Args:
-        name: package, module and node name alike.
+        name: of the node and its executable.
         parameters: ROS parameter file.
         log: where stdout and stderr go, appended.
         in_foreground: stay in this process' group, so that the node can use the terminal.
@@ -43,7 +43,7 @@ class NodeProcess:
         self._environment = dict(environment or {})
         self.log = log
         self.starts = 0
-        self._command = [sys.executable, '-m', f'{name}.node', '--ros-args', '--params-file', str(parameters),
+        self._command = [sys.executable, '-m', node_module(name), '--ros-args', '--params-file', str(parameters),
                          '--disable-external-lib-logs']
         self._in_foreground = in_foreground
         self._process: subprocess.Popen | None = None

@@ -6,7 +6,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from session_recorder_node import annotate, recover
+from shared_control_records.bag import annotate, recover
 from shared_control_records.session import bag_metadata
 from shared_control_records.session.folder import SessionFolder
 

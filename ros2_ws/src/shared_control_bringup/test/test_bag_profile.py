@@ -9,9 +9,9 @@ from mcap.reader import make_reader
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from session_recorder_node.bag.writer import BagWriter
 from shared_control.contract import RECORDER_DEPTH
 from shared_control.contract_tables import qos_overrides, record_arguments
+from shared_control_records.bag.writer import BagWriter
 from shared_control_ros.contract import BAG_TOPICS
 
 PACKAGE = Path(__file__).parents[1]

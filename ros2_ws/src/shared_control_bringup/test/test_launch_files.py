@@ -5,6 +5,7 @@ import importlib.util
 import re
 import subprocess
 import sys
+from importlib.metadata import entry_points
 from pathlib import Path
 from types import ModuleType
 from xml.etree import ElementTree
@@ -13,6 +14,7 @@ import pytest
 from shared_control_bringup.graph import ALL_NODES, overrides
 from shared_control_bringup.parameters import DEFAULTS, load
 from shared_control_bringup.settings import TUTORS, Settings
+from shared_control_ros.processes import node_module
 
 PACKAGE = Path(__file__).parents[1]
 PACKAGES = PACKAGE.parent
@@ -50,9 +52,11 @@ def used(tree):
     return found
 
 
-def parameters_of(package):
+def parameters_of(node):
     """Parameters that a node declares."""
-    trees = [ast.parse(path.read_text()) for path in (PACKAGES / package / package).glob('*.py')]
+    package, *rest = node_module(node).split('.')
+    folder = (PACKAGES / package / package).joinpath(*rest).parent
+    trees = [ast.parse(path.read_text()) for path in folder.glob('*.py')]
     return {'use_sim_time'} | {call.args[1].value for tree in trees for call in calls(tree, 'declare')}
 
 
@@ -139,10 +143,10 @@ def test_helpers_and_the_names_they_are_called_by_exist(tree):
 def test_nodes_and_their_parameters_exist(started):
     for path in FILES:
         for node in started(path.name, **{**ARGUMENTS, 'tutor': 'sim'}):
-            package = node.kwargs['package']
+            package, name = node.kwargs['package'], node.kwargs['executable']
             if (PACKAGES / package).is_dir():
-                assert console_scripts(package) == [package] == [node.kwargs['executable']]
-                assert set(given_to(node)) <= parameters_of(package), package
+                assert name in console_scripts(package)
+                assert set(given_to(node)) <= parameters_of(name), name
 
 
 @pytest.mark.parametrize('tutor', TUTORS)
@@ -151,15 +155,15 @@ def test_a_launch_starts_the_nodes_that_a_session_starts(started, tutor):
     nodes = started('session.launch.py', **arguments)
     settings = Settings(tutor=tutor, seed=7, page=('0.0.0.0', 9000))
     expected = overrides(settings, Path('out/session'), shows_screen=tutor == 'keyboard')
-    assert {node.kwargs['package']: given_to(node) for node in nodes} == expected
-    assert [node.kwargs['package'] for node in nodes] == list(expected)
+    assert {node.kwargs['executable']: given_to(node) for node in nodes} == expected
+    assert [node.kwargs['executable'] for node in nodes] == list(expected)
     assert all(node.kwargs['parameters'][0] == str(DEFAULTS) for node in nodes)
 
 
 def test_the_controller_is_enabled_beside_a_simulator_only(started):
     assert all('enabled' not in values for values in load().values())
     for path in FILES:
-        nodes = {node.kwargs['package']: given_to(node) for node in started(path.name, **ARGUMENTS)}
+        nodes = {node.kwargs['executable']: given_to(node) for node in started(path.name, **ARGUMENTS)}
         if 'torque_ctrl_node' in nodes:
             assert nodes['torque_ctrl_node']['enabled'] is ('panda_sim_node' in nodes), path.name
     # When it is started again it has the same parameters: alone it stays disabled whatever the file says.
@@ -185,9 +189,11 @@ def test_views_are_started_with_arguments_that_they_have(tree):
 
 
 def test_one_node_alone_can_be_any_node():
-    depends = ElementTree.parse(PACKAGE / 'package.xml').iter('exec_depend')
-    assert sorted(ALL_NODES) == sorted(depend.text for depend in depends if depend.text.endswith('_node'))
-    assert all(console_scripts(node) == [node] for node in ALL_NODES)
+    depends = {depend.text for depend in ElementTree.parse(PACKAGE / 'package.xml').iter('exec_depend')}
+    for node in ALL_NODES:
+        assert node_module(node).partition('.')[0] in {*depends, PACKAGE.name}
+    installed = {script.name for script in entry_points(group='console_scripts') if script.name.endswith('_node')}
+    assert set(ALL_NODES) == installed
 
 
 def test_the_readme_lists_the_files_and_their_arguments():

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from robot_view_node.node import MARKERS, ROBOT_DESCRIPTION
 from shared_control.robot.limits import JOINT_NAMES
+from shared_control_nodes.view.node import MARKERS, ROBOT_DESCRIPTION
 from shared_control_ros.contract import BASE_FRAME, TOPICS
 
 VIEWS = Path(__file__).parents[1] / 'views'

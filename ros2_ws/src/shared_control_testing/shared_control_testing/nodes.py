@@ -23,7 +23,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from shared_control_ros.contract import Topic
 from shared_control_ros.fast_loop import Polled
-from shared_control_ros.processes import leave_with_the_parent, node_environment
+from shared_control_ros.processes import leave_with_the_parent, node_environment, node_module
 
 __all__ = ['domain_id', 'observer', 'start_node']
 
@@ -60,7 +60,7 @@ class RunningNode:
     """A node in a process of its own."""
 
     def __init__(self, package: str, name: str, parameters: dict[str, Any], log: Path, python: str = sys.executable):
-        command = [python, '-m', f'{package}.node', '--ros-args', '-r', f'__node:={name or package}']
+        command = [python, '-m', node_module(package), '--ros-args', '-r', f'__node:={name or package}']
         for name, value in parameters.items():
             command += ['-p', f'{name}:={_yaml(value)}']
         self.log_file = log

@@ -1,6 +1,7 @@
 """What a session's folder holds beside its bag, kept in the bag, so that the bag alone gives the same report.
 
-The recorder puts it behind the messages as a metadata record of the MCAP file (``session_recorder_node.annotate``).
+A session puts it behind the messages as a metadata record of the MCAP file
+(``shared_control_records.bag.annotate``).
 """
 
 import json

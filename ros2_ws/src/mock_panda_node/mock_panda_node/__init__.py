@@ -1,1 +1,0 @@
-"""A mock Panda: the topics and the behaviour of an effort-controlled one, in simulation."""

@@ -1,0 +1,157 @@
+"""session_recorder_node: records every topic of the contract into an MCAP bag that ``ros2 bag`` reads."""
+
+import itertools
+import sys
+import time
+from collections import deque
+
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from shared_control_records.bag.last_sent import last_sent
+from shared_control_records.bag.writer import BagWriter
+from shared_control_ros import contract
+from shared_control_ros.contract import Topic
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.parameters import ParameterError, declare
+from shared_control_ros.runner import Stop
+from shared_control_ros.runner import run as run_node
+
+from .topic_info import message_type, qos_yaml
+
+POLL_PERIOD = 0.02
+"""s. Taking what has come every 20 ms costs a fraction of waking up for every message."""
+SERVICE_POLLS = 5
+"""Services (parameters) are looked after every so many polls: that costs as much as a poll."""
+
+
+class RecordedTopic:
+    """One topic on its way into the bag."""
+
+    def __init__(self, node: Node, topic: Topic):
+        self._node = node
+        self._topic = topic
+        self._subscription = Polled(node, topic, raw=True, qos_profile=QoSProfile(
+            depth=contract.RECORDER_DEPTH, reliability=topic.qos.reliability, durability=topic.qos.durability))
+        self._waiting: deque[tuple[bytes, dict]] = deque()
+        self.name = self._subscription.topic_name
+        self.latched = topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        self.recorded_until = 0
+        """Messages sent up to this time, ns, are in the bag already."""
+        self._sequence = 0
+        self._gaps = 0
+        self._publishers = 0
+
+    def collect(self) -> None:
+        """Take all messages that have come into memory, so that the middleware drops none."""
+        while (taken := self._subscription.take_with_info()) is not None:
+            self._waiting.append(taken)
+
+    def announce(self, bag: BagWriter) -> None:
+        """Say where to write."""
+        described = message_type(self._topic.msg_type)
+        self._bag = bag
+        self._channel = bag.add_topic(
+            self.name, described.name, described.definition, described.type_hash, qos_yaml(self._topic.qos))
+
+    def drain(self) -> None:
+        """Write all messages that have come."""
+        self.collect()
+        while self._waiting:
+            data, info = self._waiting.popleft()
+            if info['source_timestamp'] <= self.recorded_until:
+                continue
+            sequence = info['publication_sequence_number'] or 0
+            if sequence > self._sequence + 1 and self._sequence:
+                self._gaps += sequence - self._sequence - 1
+            self._sequence = sequence
+            self._bag.write(self._channel, data, info['source_timestamp'], info['received_timestamp'], sequence)
+
+    def lost(self) -> int:
+        """Messages that were published since the last call but did not come.
+
+        Told by the publisher's count of its messages; several publishers count each on their own, and then it cannot
+        be told and is 0.
+        """
+        gaps, self._gaps = self._gaps, 0
+        before, self._publishers = self._publishers, self._node.count_publishers(self.name)
+        return gaps if before <= 1 and self._publishers <= 1 else 0
+
+
+class SessionRecorder:
+    """The node: takes serialized messages and writes them as they are."""
+
+    def __init__(self) -> None:
+        # Bags are stamped by the wall clock, as rosbag2 does by default.
+        self.node = Node('session_recorder_node', parameter_overrides=[Parameter('use_sim_time', value=False)])
+        output = declare(self.node, 'output', '', "The bag's folder; made when it is missing.")
+        if not output:
+            raise ParameterError("parameter 'output' is missing: the folder to record into, -p output:=FOLDER")
+        self._flush_period: float = declare(
+            self.node, 'flush_period', 0.25, 'At most this much is lost when the recorder is killed.',
+            unit='s', minimum=0.05, maximum=0.5)
+        self._topics = [RecordedTopic(self.node, topic) for topic in contract.BAG_TOPICS]
+        # After a long recording was killed, this takes a while. What comes meanwhile is recorded, too.
+        self._bag = BagWriter(output, meanwhile=self._collect)
+        for recovered in self._bag.recovered:
+            self.node.get_logger().warning(f'finished what a killed recorder left behind: {recovered}')
+        for topic in self._topics:
+            topic.announce(self._bag)
+        latched = {topic.name: topic for topic in self._topics if topic.latched}
+        for name, sent in last_sent(self._bag.previous_files, latched).items():
+            latched[name].recorded_until = sent
+        self._diagnostics = Diagnostics(self.node, POLL_PERIOD)
+        self._background = Background(self.node)
+        self._lost = 0
+        self.node.get_logger().info(f'recording {len(self._topics)} topics into {self._bag.path}')
+
+    def run(self, stop: Stop) -> None:
+        """Record until ``stop.requested``, then finish the file."""
+        next_flush = time.monotonic() + self._flush_period
+        for poll in itertools.count():
+            if stop.requested:
+                break
+            started = time.monotonic()
+            self._diagnostics.tick()
+            self._drain()
+            if started >= next_flush:
+                self._bag.flush()
+                next_flush = started + self._flush_period
+            if self._diagnostics.due():
+                self._report()
+            if poll % SERVICE_POLLS == 0:
+                self._background.poll()
+            time.sleep(max(0.0, started + POLL_PERIOD - time.monotonic()))
+        self._drain()
+        self._bag.finish()
+        self.node.get_logger().info(f'{self._bag.messages} messages in {self._bag.path}')
+
+    def close(self) -> None:
+        """Finish the file after an error elsewhere; after :meth:`run` there is nothing left to do."""
+        self._bag.finish()
+        self._background.close()
+
+    def _collect(self) -> None:
+        for topic in self._topics:
+            topic.collect()
+
+    def _drain(self) -> None:
+        for topic in self._topics:
+            topic.drain()
+
+    def _report(self) -> None:
+        lost = {topic.name: count for topic in self._topics if (count := topic.lost())}
+        self._lost += sum(lost.values())
+        self._diagnostics.publish(
+            {name: f'{count} messages lost in the last second' for name, count in lost.items()},
+            messages=self._bag.messages, lost=self._lost, bytes=self._bag.bytes)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Entry point of ``ros2 run shared_control_bringup session_recorder_node``."""
+    return run_node(SessionRecorder, args)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

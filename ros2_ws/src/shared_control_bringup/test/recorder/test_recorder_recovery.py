@@ -1,0 +1,236 @@
+"""Unfinished files, cut anywhere."""
+
+import errno
+import os
+import subprocess
+import sys
+
+import pytest
+import yaml
+from mcap.reader import make_reader
+from rosbags.rosbag2 import Reader
+from shared_control_records.bag import BagError, annotate, recover
+from shared_control_records.bag.last_sent import last_sent
+from shared_control_records.bag.writer import BagWriter
+
+CHUNKS, PER_CHUNK = 3, 4
+HASH = 'RIHS01_' + 64 * '0'
+QOS = '[]'
+
+
+def record(bag, finish=True):
+    """A file of three chunks of four messages on two topics; an unfinished one has its file closed all the same."""
+    writer = BagWriter(bag)
+    channels = [writer.add_topic(name, type_name, f'{field} data\n', HASH, QOS) for name, type_name, field in (
+        ('/joint_states', 'std_msgs/msg/Float64', 'float64'), ('/training/episode', 'std_msgs/msg/Int32', 'int32'))]
+    ends = [writer.path.stat().st_size]
+    for chunk in range(CHUNKS):
+        for message in range(PER_CHUNK):
+            number = chunk * PER_CHUNK + message
+            writer.write(channels[number % 2], f'message {number:4}'.encode() * 9, number, number + 1, number + 1)
+        writer.flush()
+        ends.append(writer.path.stat().st_size)
+    if finish:
+        writer.finish()
+    else:
+        writer._file.close()
+    return writer.path, ends
+
+
+def messages(path):
+    with path.open('rb') as file:
+        return [message.data for _, _, message in make_reader(file, validate_crcs=True).iter_messages()]
+
+
+def test_a_finished_file_equals_one_that_was_killed_and_recovered(tmp_path):
+    finished, _ = record(tmp_path / 'a')
+    killed, _ = record(tmp_path / 'b', finish=False)
+    [recovered] = recover(tmp_path / 'b')
+    assert (recovered.path, recovered.messages, recovered.cut) == (killed, CHUNKS * PER_CHUNK, 0)
+    assert killed.read_bytes() == finished.read_bytes()
+    described = [(tmp_path / bag / 'metadata.yaml').read_text() for bag in 'ab']
+    assert described[0].replace('a_0', 'b_0') == described[1]
+
+
+def test_wherever_a_file_is_cut_all_whole_chunks_are_kept(tmp_path):
+    path, ends = record(tmp_path / 'bag', finish=False)
+    whole, all_messages = path.read_bytes(), None
+    for size in range(len(whole), -1, -29):
+        (tmp_path / 'bag' / 'metadata.yaml').unlink(missing_ok=True)
+        path.write_bytes(whole[:size])
+        recover(tmp_path / 'bag')
+        if size < ends[1] and not path.exists():
+            continue
+        kept = messages(path)
+        all_messages = all_messages or kept
+        assert kept == all_messages[:len(kept)]
+        assert len(kept) >= PER_CHUNK * sum(end <= size for end in ends[1:])
+        assert len(kept) % PER_CHUNK == 0
+        with Reader(tmp_path / 'bag') as reader:
+            assert [bytes(data) for _, _, data in reader.messages()] == kept
+            assert reader.message_count == len(kept)
+
+
+def test_a_recovery_that_is_cut_short_can_be_repeated(tmp_path):
+    path, ends = record(tmp_path / 'bag')
+    whole = path.read_bytes()
+    for size in range(ends[-1], len(whole), 97):
+        path.write_bytes(whole[:size])
+        recover(tmp_path / 'bag')
+        assert path.read_bytes() == whole
+
+
+def test_something_else_can_be_done_after_every_chunk(tmp_path):
+    record(tmp_path / 'bag', finish=False)
+    done = []
+    recover(tmp_path / 'bag', meanwhile=lambda: done.append(1))
+    assert len(done) == CHUNKS
+
+
+def test_a_spoilt_last_chunk_is_dropped(tmp_path):
+    path, ends = record(tmp_path / 'bag', finish=False)
+    content = bytearray(path.read_bytes())
+    content[ends[-2] + 80:ends[-2] + 90] = bytes(10)
+    path.write_bytes(content)
+    [recovered] = recover(tmp_path / 'bag')
+    assert recovered.messages == (CHUNKS - 1) * PER_CHUNK
+    assert len(messages(path)) == recovered.messages
+
+
+def test_a_file_that_is_spoilt_before_its_end_is_left_as_it_is(tmp_path):
+    path, ends = record(tmp_path / 'bag', finish=False)
+    content = bytearray(path.read_bytes())
+    content[ends[1] + 80:ends[1] + 90] = bytes(10)
+    path.write_bytes(content)
+    with pytest.raises(BagError, match='is damaged before its end'):
+        recover(tmp_path / 'bag')
+    assert path.read_bytes() == content
+
+
+def test_zeros_that_a_power_cut_leaves_are_cut_off(tmp_path):
+    path, _ = record(tmp_path / 'bag', finish=False)
+    path.write_bytes(path.read_bytes() + bytes(5000))
+    [recovered] = recover(tmp_path / 'bag')
+    assert (recovered.messages, recovered.cut) == (CHUNKS * PER_CHUNK, 5000)
+
+
+def test_metadata_that_was_not_written_any_more_is_made_anew(tmp_path):
+    record(tmp_path / 'bag')
+    text = (tmp_path / 'bag' / 'metadata.yaml').read_text()
+    (tmp_path / 'bag' / 'metadata.yaml').unlink()
+    assert recover(tmp_path / 'bag') == []
+    assert (tmp_path / 'bag' / 'metadata.yaml').read_text() == text
+
+
+def test_a_whole_bag_is_left_as_it_is(tmp_path):
+    path, _ = record(tmp_path / 'bag')
+    metadata = tmp_path / 'bag' / 'metadata.yaml'
+    metadata.write_text(metadata.read_text().replace('custom_data: null', 'custom_data: {mine: kept}'))
+    before = path.read_bytes(), metadata.read_text()
+    assert recover(tmp_path / 'bag') == []
+    assert (path.read_bytes(), metadata.read_text()) == before
+
+
+def test_files_are_numbered_on_beyond_nine(tmp_path):
+    for _ in range(11):
+        path, _ = record(tmp_path / 'bag')
+    assert path.name == 'bag_10.mcap'
+    described = yaml.safe_load((tmp_path / 'bag' / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    assert described['relative_file_paths'] == [f'bag_{number}.mcap' for number in range(11)]
+    assert described['message_count'] == 11 * CHUNKS * PER_CHUNK
+
+
+def test_what_is_no_recording_is_not_touched(tmp_path):
+    (tmp_path / 'bag').mkdir()
+    foreign = tmp_path / 'bag' / 'bag_0.mcap'
+    foreign.write_text('something else altogether')
+    with pytest.raises(BagError, match='is no MCAP file'):
+        recover(tmp_path / 'bag')
+    assert foreign.read_text() == 'something else altogether'
+    with pytest.raises(BagError, match='there is no bag at'):
+        recover(tmp_path / 'nowhere')
+
+
+def test_a_bag_that_is_being_recorded_is_not_touched(tmp_path):
+    writer = BagWriter(tmp_path / 'bag')
+    with pytest.raises(BagError, match='is being recorded by another process'):
+        recover(tmp_path / 'bag')
+    assert writer.path.exists()
+    writer.finish()
+    assert recover(tmp_path / 'bag') == []
+
+
+def test_a_bag_needs_no_ros():
+    used = 'import sys, shared_control_records.bag.writer, shared_control_records.bag.last_sent'
+    subprocess.run([sys.executable, '-c', f'{used}; assert "rclpy" not in sys.modules'], check=True)
+
+
+def test_the_newest_message_of_a_latched_topic_is_found(tmp_path):
+    path, _ = record(tmp_path / 'bag')
+    newest = CHUNKS * PER_CHUNK - 1
+    assert last_sent([path], ['/training/episode', '/training/phase']) == {'/training/episode': newest}
+
+
+def test_an_annotation_stands_in_the_file_and_a_torn_one_costs_no_message(tmp_path):
+    path, _ = record(tmp_path / 'bag')
+    before, plain = messages(path), path.read_bytes()
+    annotate(tmp_path / 'bag', 'note', {'key': 'old'})
+    annotate(tmp_path / 'bag', 'note', {'key': 'new'})
+    with path.open('rb') as file:
+        notes = [record.metadata for record in make_reader(file).iter_metadata() if record.name == 'note']
+    assert notes == [{'key': 'new'}]
+    assert messages(path) == before
+    with Reader(tmp_path / 'bag') as reader:
+        assert reader.message_count == CHUNKS * PER_CHUNK
+
+    annotated = path.read_bytes()
+    path.write_bytes(annotated[:-100])  # the index alone is torn
+    recover(tmp_path / 'bag')
+    assert path.read_bytes() == annotated
+    path.write_bytes(annotated[:annotated.index(b'new')])
+    recover(tmp_path / 'bag')
+    assert path.read_bytes() == plain
+
+
+def test_a_damaged_file_is_not_annotated(tmp_path):
+    path, ends = record(tmp_path / 'bag')
+    content = bytearray(path.read_bytes())
+    content[ends[-2] + 80:ends[-2] + 90] = bytes(10)
+    path.write_bytes(content)
+    with pytest.raises(BagError, match='only 8 of 12 messages can be read'):
+        annotate(tmp_path / 'bag', 'note', {'key': 'value'})
+    assert path.read_bytes() == content
+
+
+def test_an_annotation_leaves_those_of_other_names(tmp_path):
+    path, _ = record(tmp_path / 'bag')
+    for name in ('one', 'two', 'one'):
+        annotate(tmp_path / 'bag', name, {'of': name})
+    with path.open('rb') as file:
+        assert [record.name for record in make_reader(file).iter_metadata()] == ['rosbag2', 'two', 'one']
+
+
+def test_a_bag_without_a_message_can_be_annotated(tmp_path):
+    writer = BagWriter(tmp_path / 'bag')
+    writer.finish()
+    annotate(tmp_path / 'bag', 'note', {'key': 'value'})
+    with writer.path.open('rb') as file:
+        assert [record.name for record in make_reader(file).iter_metadata()] == ['rosbag2', 'note']
+
+
+@pytest.mark.parametrize('change', [recover, lambda bag: annotate(bag, 'note', {})])
+def test_a_copy_that_fails_leaves_the_file_as_it_was(tmp_path, monkeypatch, change):
+    path, _ = record(tmp_path / 'bag', finish=change is not recover)
+    before = path.read_bytes()
+
+    def no_room(_):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, 'fsync', no_room)
+        with pytest.raises(OSError, match='No space left'):
+            change(tmp_path / 'bag')
+    assert path.read_bytes() == before
+    assert not list((tmp_path / 'bag').glob('*.tmp'))
+    change(tmp_path / 'bag')
+    assert len(messages(path)) == CHUNKS * PER_CHUNK
