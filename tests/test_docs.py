@@ -2,6 +2,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -58,3 +60,9 @@ def test_ros_commands_name_what_exists(page):
         source = (bringup / 'launch' / file).read_text() + (bringup / bringup.name / 'launching.py').read_text()
         for argument in re.findall(r'(\w+):=', rest):
             assert re.search(rf"DeclareLaunchArgument\(\s*'{argument}'", source), argument
+
+
+def test_the_python_of_the_readme_runs():
+    code = re.findall(r'```python\n(.*?)```', (ROOT / 'README.md').read_text(), re.DOTALL)
+    assert len(code) == 1
+    subprocess.run([sys.executable, '-c', code[0]], check=True, timeout=300)
