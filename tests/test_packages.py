@@ -134,3 +134,9 @@ def test_what_drives_a_robot_loads_nothing_heavy(node):
     loaded = subprocess.run([sys.executable, '-c', f'import {node}, sys; print(*sys.modules)'],
                             capture_output=True, text=True, check=True).stdout.split()
     assert not heavy & {name.split('.')[0] for name in loaded}
+
+
+def test_no_docstring_begins_with_of():
+    """Half a sentence, which a reader has to complete from the name above it."""
+    sources = [path for package in PACKAGES for path in package.rglob('*.py')]
+    assert not [path for path in sources if re.search(r'^\s*"""Of ', path.read_text(), re.MULTILINE)]

@@ -33,9 +33,9 @@ class Scene:
     """
 
     half_length: float
-    """Of the surface along the tray's x, m."""
+    """Half the surface's length along the tray's x, m."""
     half_width: float
-    """Of the surface along the tray's y, m."""
+    """Half the surface's width along the tray's y, m."""
     surface: float
     """Height of the surface above the tray's origin, m."""
     wall: float

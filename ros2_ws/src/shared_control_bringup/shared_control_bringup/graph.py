@@ -53,7 +53,8 @@ class SessionNode:
 
 
 BESIDE_A_SIMULATOR = {'enabled': True}
-"""Of the controller, where whoever starts it also starts a simulator. It is enabled nowhere else without a person."""
+"""Parameters of the controller where whoever starts it also starts a simulator. Nowhere else is it enabled without a
+person."""
 ALONE: dict[str, dict[str, Any]] = {'torque_ctrl_node': {'enabled': False}}
 """What a node is given when it is started without the others, whatever the parameter file says: the robot might be a
 real one, and a controller that died must not move it again by itself."""

@@ -13,10 +13,10 @@ from shared_control_ros.processes import leave_with_the_parent, node_environment
 from shared_control_ros.readiness import READY_FD
 
 REAL_TIME_PRIORITY = 49
-"""Of the threads of a node in the control loop (SCHED_RR), where `ulimit -r` allows it. The loop's own thread goes one
-above them (:mod:`shared_control_ros.real_time`): to 50, the priority of ros2_control."""
+"""Priority of the threads of a node in the control loop (SCHED_RR), where `ulimit -r` allows it. The loop's own thread
+goes one above them (:mod:`shared_control_ros.real_time`): to 50, the priority of ros2_control."""
 NICENESS = 10
-"""Of the nodes outside the control loop, on a machine with one core."""
+"""Niceness of the nodes outside the control loop, on a machine with one core."""
 UNUSABLE = 2
 """Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
 

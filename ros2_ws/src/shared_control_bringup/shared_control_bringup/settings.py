@@ -27,15 +27,15 @@ class Settings:
     tutor: str = 'keyboard'
     """Who teaches: one of ``TUTORS``."""
     profile: str = 'expert'
-    """Of the simulated tutor."""
+    """Profile of the simulated tutor."""
     episodes: int = 0
     """Teach this many; 0: until somebody says that it has learned it."""
     minutes: float = 45.0
     """Teach for this long at the most, min."""
     test_episodes: int = 20
-    """Of the policy alone, at the end."""
+    """Tests of the policy alone, at the end."""
     seed: int = 0
-    """Of ball starts, learner and simulated tutor."""
+    """Seed of ball starts, learner and simulated tutor."""
     page: tuple[str, int] = ('127.0.0.1', 8088)
     """Host and port of the page; port 0: any that is free."""
     screen: bool = True

@@ -21,7 +21,7 @@ class Episode:
     phase: str = 'teach'
     """``teach`` or ``test``"""
     observations: list[np.ndarray] = field(default_factory=list)
-    """Of each step, (n,), float32"""
+    """What was seen at each step, (n,), float32"""
     actions: list[np.ndarray] = field(default_factory=list)
     """As the learner drew them, not clipped; of each step, (k,), float32"""
     rewards: list[float] = field(default_factory=list)
@@ -33,15 +33,15 @@ class Episode:
     applied: list[np.ndarray] = field(default_factory=list)
     """The moment applied in each step, (k,), N m"""
     position_error: list[float] = field(default_factory=list)
-    """Of each step, m (see ``TaskState``)"""
+    """Position error of each step, m (see ``TaskState``)"""
     velocity: list[float] = field(default_factory=list)
-    """Of each step, m/s (see ``TaskState``)"""
+    """Velocity of each step, m/s (see ``TaskState``)"""
     reward_terms: dict[str, float] = field(default_factory=dict)
     """Sums by name, unscaled."""
     failed: bool = False
     """It ended because the task failed (the ball fell); False when time was up."""
     last_observation: np.ndarray | None = None
-    """Of the state after the last step."""
+    """What was seen after the last step."""
     learn_seconds: float = 0.0
     """Duration of the update after the episode, s."""
 

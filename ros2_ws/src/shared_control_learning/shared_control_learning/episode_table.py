@@ -10,7 +10,7 @@ from shared_control.files import write_atomically
 from .episode import Episode
 
 TABLE_NAME = 'episodes.csv'
-"""Of the file in a learner's folder."""
+"""Name of the file in a learner's folder."""
 
 
 class EpisodeTable:

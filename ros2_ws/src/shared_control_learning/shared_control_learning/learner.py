@@ -18,7 +18,7 @@ class Learner(Protocol):
     """
 
     name: str
-    """Of its preset."""
+    """Name of its preset."""
     task: Task
     settings: Any
     """A frozen dataclass of everything that can be set, kept with the policy."""

@@ -24,7 +24,7 @@ class PpoSettings:
     value_hidden: Layers = (32, 32)
     """Units of the value function's hidden layers (tanh)."""
     initial_std: Positive = 0.6
-    """Of the policy in the first episode, in units of the action."""
+    """Standard deviation of the policy in the first episode, in units of the action."""
     std_decay: Annotated[float, Field(gt=0, le=1)] | None = 0.95
     """What the standard deviation is multiplied by after each episode; None: PPO learns it."""
     std_min: Positive = 0.05
@@ -32,7 +32,7 @@ class PpoSettings:
     noise_seconds: NotNegative = 0.0
     """Correlation time of the exploring noise, s; 0: white, drawn anew at each step."""
     learning_rate: Positive = 1e-2
-    """Of Adam, in the first episode."""
+    """Learning rate of Adam in the first episode."""
     learning_rate_decay: Annotated[float, Field(gt=0, le=1)] = 1.0
     """What the learning rate is multiplied by after each episode."""
     learning_rate_min: Positive = 1e-3

@@ -50,7 +50,7 @@ class TrainingRun:
     tests: list[tuple[int, bool]] = field(default_factory=list)
     """After how many episodes the policy was tested alone, and whether it passed."""
     returns: list[float] = field(default_factory=list)
-    """Of each episode, unscaled."""
+    """Return of each episode, unscaled."""
     intervention_rates: list[float] = field(default_factory=list)
     """Part of each episode in which the human held a moment, 0..1."""
     seconds: float = 0.0

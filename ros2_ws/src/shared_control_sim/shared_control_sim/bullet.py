@@ -13,7 +13,7 @@ from shared_control.scene import Ball, Scene
 from shared_control.tasks.balance import BALANCE
 
 _POSITION, _VELOCITY = itemgetter(0), itemgetter(1)
-"""Of what PyBullet says of a joint."""
+"""Parts of the state of a joint as PyBullet gives it."""
 
 
 class BulletWorld:

@@ -19,7 +19,7 @@ class Picture:
     ball_on_tray: np.ndarray | None = None
     """(3,), m: along, across and above the tray, in its frame."""
     pitch: float | None = None
-    """Of the tray, rad; positive: the left of the picture (base +x) is down."""
+    """Pitch of the tray, rad; positive: the left of the picture (base +x) is down."""
     human: float | None = None
     """N m"""
     agent: float | None = None
@@ -29,11 +29,11 @@ class Picture:
     phase: str | None = None
     episode: int | None = None
     time_left: float | None = None
-    """Of the episode, s."""
+    """What is left of the episode, s."""
     human_share: float | None = None
     """0..1"""
     success: float | None = None
-    """Of the last test, 0..1."""
+    """Share of the last test that succeeded, 0..1."""
     keys: list[int] = field(default_factory=lambda: [0, 0, 0])
     """Left, right, space: 1 while lit."""
     hand: str = ''
@@ -43,7 +43,7 @@ class Picture:
     """How long the robot has said nothing, s; None: it speaks."""
     notice: str = ''
     time: float = 0.0
-    """Of the charts, s: the robot's, or that of the replay."""
+    """Time of the charts, s: the robot's, or that of the replay."""
     history: History = field(default_factory=History)
     replay: dict[str, Any] | None = None
     """Position, length (s), speed and whether it plays."""

@@ -12,7 +12,7 @@ from .live import LIT_FOR
 from .picture import Picture
 
 LONGEST_STILL = 2.0
-"""Of a longer gap in the recording (between two runs of a session) as much is played, s."""
+"""As much is played of a longer gap in the recording (between two runs of a session), s."""
 STALE_AFTER = 0.2
 """The controller repeats its moments; it was not there when they are older, s of the recorder's clock."""
 

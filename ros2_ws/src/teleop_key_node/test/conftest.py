@@ -24,7 +24,7 @@ __all__ = ['domain_id']
 
 
 def _environment() -> dict[str, str]:
-    """Of the node's process; :func:`domain_id` has set what concerns DDS."""
+    """The environment of the node's process; :func:`domain_id` has set what concerns DDS."""
     return os.environ | {'TERM': 'xterm-256color', 'LC_ALL': 'C.UTF-8', 'PYTHONUNBUFFERED': '1'}
 
 

@@ -19,7 +19,7 @@ def line_with(lines: list[str], text: str) -> str:
 
 
 def columns_of_dots(scene: Scene) -> list[list[int]]:
-    """Of each line of the picture, the columns that are not blank."""
+    """The columns of each line of the picture that are not blank."""
     return [[i for i, cell in enumerate(line) if cell != ' '] for line in draw(scene, 80, 10, True)]
 
 

@@ -22,7 +22,7 @@ class TaskState(Protocol):
     position_error: float
     """Goal minus ball, m: signed along the axis of a task with one, a distance (0 or more) with two."""
     velocity: float
-    """Of the ball, m/s: signed or a speed, likewise."""
+    """Velocity of the ball, m/s: signed or a speed, likewise."""
     manipulability: float
     """k_w (34)"""
 

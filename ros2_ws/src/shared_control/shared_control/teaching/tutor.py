@@ -15,7 +15,7 @@ from ..tasks.task import Task
 from .profiles import TutorProfile, in_episode
 
 BALL_ACCELERATION = 5.0 / 7.0 * 9.81
-"""Of a ball that rolls without slipping, m/s^2 for each rad of tilt."""
+"""Acceleration of a ball that rolls without slipping, m/s^2 for each rad of tilt."""
 
 TILT_OF_MOMENT = 0.006
 """What a tutor expects a moment to do to the tray within a few tenths of a second, rad/(N m)."""
@@ -42,7 +42,7 @@ _STREAM = 1
 _ANY_KEY: Any = [None, Key.LEFT, Key.RIGHT, Key.SPACE]
 
 ROUNDING = 1e-6
-"""Of times, s."""
+"""Times closer than this are equal, s."""
 
 
 def can_teach(task: Task) -> bool:
@@ -57,9 +57,9 @@ class Picture:
     position_error: float
     """Tray centre - ball, along base x, m"""
     velocity: float
-    """Of the ball along base x, m/s"""
+    """Velocity of the ball along base x, m/s"""
     pitch: float
-    """Of the tray, rad"""
+    """Pitch of the tray, rad"""
 
 
 @dataclass(frozen=True)

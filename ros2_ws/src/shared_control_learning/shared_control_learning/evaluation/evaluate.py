@@ -18,9 +18,9 @@ Act = Callable[[np.ndarray], np.ndarray]
 
 TEST_EPISODES = 20
 TEST_SEED = 424_242
-"""Of the ball starts; another for each evaluation of a study."""
+"""Seed of the ball starts; another for each evaluation of a study."""
 SUCCESSES_NEEDED = 19
-"""Of 20 test episodes, in two evaluations in a row."""
+"""So many of 20 test episodes, in two evaluations in a row."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from .recording import RecordingEnv
 from .result import ProtocolResult
 
 SECONDS = 30.0
-"""Of the episode, s."""
+"""Length of the episode, s."""
 PUSHES = ((5.0, 6.0), (10.0, 11.0))
 """From and to, s."""
 FORCE = (50.0, 0.0, -50.0)

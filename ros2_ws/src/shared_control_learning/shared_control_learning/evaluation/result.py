@@ -22,7 +22,7 @@ class ProtocolResult:
     position_error: np.ndarray
     """Tray centre minus ball along base x, (episodes, steps), m"""
     velocity: np.ndarray
-    """Of the ball along base x, (episodes, steps), m/s: what the policy sees."""
+    """Velocity of the ball along base x, (episodes, steps), m/s: what the policy sees."""
     velocity_error: np.ndarray
     """Tray minus ball along base x, (episodes, steps), m/s: the rate of the position error."""
     agent_moment: np.ndarray

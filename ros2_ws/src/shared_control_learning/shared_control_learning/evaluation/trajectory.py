@@ -17,7 +17,7 @@ from .recording import RecordingEnv
 from .result import ProtocolResult
 
 SECONDS = 20.0
-"""Of the episode, s: five periods of the slowest reference. The thesis does not say."""
+"""Length of the episode, s: five periods of the slowest reference. The thesis does not say."""
 
 
 class DrivenPlant(LocalPlant):

@@ -18,7 +18,7 @@ class ArmState:
     """What the arm reported last."""
 
     time_ms: int
-    """Of the arm's own clock."""
+    """Time by the arm's own clock."""
     q: np.ndarray
     """Joint positions, (7,), rad"""
     qd: np.ndarray

@@ -20,7 +20,7 @@ MOMENT_COLOURS = {
 """Those of the reports."""
 METRES_PER_NEWTON_METRE = 0.03
 BAR_HEIGHTS = {'human': 0.30, 'agent': 0.25, 'applied': 0.20}
-"""Of the bars above the tray's centre, m."""
+"""Heights of the bars above the tray's centre, m."""
 
 
 def tray_markers(position: np.ndarray, rotation: np.ndarray, boxes: Sequence[Box]) -> list[Marker]:

@@ -20,7 +20,7 @@ class Timing:
     tick_p50_ms: float
     """Median duration of a tick, of the longest run."""
     tick_p99_ms: float
-    """Of the longest run."""
+    """99th percentile, likewise."""
     late_tick_ratio: float
     """Part of the ticks that took more than a millisecond."""
 

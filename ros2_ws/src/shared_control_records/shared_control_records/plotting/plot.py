@@ -16,7 +16,7 @@ class Plot:
     """A plot that is yet to be drawn."""
 
     name: str
-    """Of its files, without suffix."""
+    """Name of its files, without suffix."""
     draw: Callable[[Figure], None]
     """Draws it into an empty figure."""
     size: tuple[float, float] = (8.0, 4.5)

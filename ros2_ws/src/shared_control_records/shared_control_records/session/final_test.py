@@ -46,7 +46,7 @@ class FinalTest:
     velocity_max: float = BALANCE.velocity_max
     """Mean |velocity| of a success, m/s."""
     sample_period: float = STEPS_PER_SAMPLE * POLICY_PERIOD
-    """Of the tracks, s."""
+    """Sample period of the tracks, s."""
 
     @property
     def successes(self) -> int:

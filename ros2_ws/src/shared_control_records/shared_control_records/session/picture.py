@@ -23,7 +23,7 @@ from .final_test import FinalTest
 ERROR_SHOWN = 25.0
 """cm; the tray's ends are 20 cm from its centre."""
 ENDS_SHOWN = 4
-"""Of many episodes, this many of the first and of the last stand out."""
+"""This many of the first and of the last stand out of many episodes."""
 MOMENT_BINS = 1500
 """Across the width of the picture."""
 

@@ -19,7 +19,7 @@ from .summary import Summary, summarize
 
 _PAGE = Path(__file__).parent / 'page.html'
 STYLE_SHEET = Path(__file__).with_name('page.css')
-"""Of this page and of other reports."""
+"""Style sheet of this page and of other reports."""
 _NOT_KNOWN = '–'
 
 

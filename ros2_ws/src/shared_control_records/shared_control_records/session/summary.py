@@ -37,7 +37,7 @@ class Summary:
     late_tick_ratio: float | None
     """Part of the ticks that took more than a millisecond."""
     restarts: int | None
-    """Of nodes that died."""
+    """How often nodes that died were started again."""
     bag_checks: list[str] | None
     """What is wrong with the bag; empty when nothing is."""
     bag: str | None

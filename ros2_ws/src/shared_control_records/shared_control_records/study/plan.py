@@ -34,7 +34,7 @@ class Participant:
     group: str
     """The profile that a simulated one was drawn around, or ``person``."""
     seed: int
-    """Of everything random, the same in every condition: so conditions are paired."""
+    """Seed of everything random, the same in every condition: so conditions are paired."""
     tutor: TutorProfile | None
     """The simulated tutor; None for a real one."""
 

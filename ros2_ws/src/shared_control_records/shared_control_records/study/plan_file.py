@@ -86,7 +86,7 @@ class People(Section):
     practice_episodes: Annotated[int, Field(ge=0, le=1000)] = 2
     """To get to know the keys; kept apart."""
     minutes: Annotated[float, Field(ge=0.1, le=1440.0)] = 45.0
-    """Of teaching in each condition, at the most (3.4)."""
+    """Longest time of teaching in each condition (3.4)."""
     session_options: list[Annotated[str, AfterValidator(_session_option)]] = []
     """Some of ``SESSION_OPTIONS``, with their values."""
 

@@ -42,7 +42,7 @@ class RunResult:
     """Episodes before the second of two tests in a row was passed; for a real participant, episodes until they said
     that it has learned it, if it then passed. None: censored at the last episode."""
     seconds: float
-    """Of computing; for a real participant, of the teaching."""
+    """Time of computing; for a real participant, of teaching."""
     episodes: list[dict[str, Any]]
     """Rows of ``episodes.csv``, numbers as numbers."""
     tlx: dict[str, float] | None = None

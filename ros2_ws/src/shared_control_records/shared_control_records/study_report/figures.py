@@ -20,11 +20,11 @@ from .measures import BEST, TRAY_END, Study, times
 from .statistics import survival
 
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
-"""Of conditions, in the plan's order (Okabe and Ito)."""
+"""Colours of conditions, in the plan's order (Okabe and Ito)."""
 RETURN_SHOWN = (-1500.0, 750.0)
 """Returns below are drawn at the edge: an episode in which the ball falls costs 5000."""
 LOW_HIGH_SHARE = 3
-"""Of real participants, the best and the worst third count as high and low performers."""
+"""The best and the worst third of real participants count as high and low performers."""
 
 Draw = Callable[[Figure, Study], pd.DataFrame]
 
@@ -34,7 +34,7 @@ class Plot:
     """A figure of the report."""
 
     name: str
-    """Of its files."""
+    """Name of its files."""
     title: str
     thesis: str
     """What the thesis' own figure shows."""

@@ -17,7 +17,7 @@ from .tracking import GAIN_SETS, SECONDS, SETTLING_SECONDS, Tracking
 SCENARIOS = {True: 'Scenario 1: with the non-linear terms', False: 'Scenario 2: without'}
 COLOURS = {True: AGENT, False: HUMAN}
 _EVERY = 10
-"""Of the samples at 1 kHz that are drawn."""
+"""Every so many of the samples at 1 kHz are drawn."""
 
 
 def plots(runs: Sequence[Tracking]) -> Iterator[Plot]:

@@ -11,7 +11,7 @@ from shared_control.robot.posture import GAINS
 from shared_control_sim.bullet import BulletWorld
 
 SECONDS = 8.0
-"""Of a run, s: two periods of the slowest reference. The thesis does not say."""
+"""Length of a run, s: two periods of the slowest reference. The thesis does not say."""
 SETTLING_SECONDS = 2.0
 """The arm starts at rest and the reference at full speed: this long the start counts as such, s."""
 GAIN_SETS = ('high', 'low')
@@ -34,11 +34,11 @@ class Tracking:
     seconds: np.ndarray
     """(ticks,), s"""
     reference: np.ndarray
-    """Of the tray's velocity along x (25), (ticks,), m/s"""
+    """Reference of the tray's velocity along x (25), (ticks,), m/s"""
     measured: np.ndarray
     """The tray's velocity along x, (ticks,), m/s"""
     distance: np.ndarray
-    """Of the tray from where the reference has it, (ticks,), m"""
+    """Distance of the tray from where the reference has it, (ticks,), m"""
     manipulability: np.ndarray
     """k_w (34), (ticks,)"""
 

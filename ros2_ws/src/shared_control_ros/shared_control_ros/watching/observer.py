@@ -45,7 +45,7 @@ class Observer:
 
     @property
     def stamp_ns(self) -> int:
-        """Of the newest /joint_states, ns; -1 when there was none."""
+        """Stamp of the newest /joint_states, ns; -1 when there was none."""
         return self._stamp_ns
 
     def update(self, scene: Scene) -> None:

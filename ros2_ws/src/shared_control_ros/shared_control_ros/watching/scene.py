@@ -14,7 +14,7 @@ class Scene:
     tray: TaskScene = BALANCE.scene
     """The geometry of the task."""
     pitch: float | None = None
-    """Of the tray, rad; positive: the left of the picture (base +x) is down."""
+    """Pitch of the tray, rad; positive: the left of the picture (base +x) is down."""
     q: np.ndarray | None = None
     """Joint positions, (7,), rad."""
     ball: np.ndarray | None = None
@@ -24,7 +24,7 @@ class Scene:
     ball_along: float | None = None
     """The ball's offset from the middle of the tray along its x axis, m; positive: left in the picture."""
     ball_height: float | None = None
-    """Of the ball's centre above the tray's frame, m."""
+    """Height of the ball's centre above the tray's frame, m."""
     human: float = 0.0
     """N m"""
     agent: float | None = None
@@ -41,11 +41,11 @@ class Scene:
     """``teach``, ``learn``, ``test``, ``wait``, ``done``; None: nobody teaches a robot."""
     episode: int | None = None
     time_left: float | None = None
-    """Of the episode, s."""
+    """What is left of the episode, s."""
     returns: list[float] = field(default_factory=list)
-    """Of the episodes so far."""
+    """Returns of the episodes so far."""
     success: float | None = None
-    """Of the last test, 0..1."""
+    """Share of the last test that succeeded, 0..1."""
     paused: bool = False
     simulator_silent_for: float | None = None
     """How long the simulator has said nothing, s; None: it runs."""

@@ -32,9 +32,9 @@ class BalanceState:
     position_error: float
     """e_x = tray centre - ball along base x, m"""
     velocity: float
-    """Of the ball along base x, m/s"""
+    """Velocity of the ball along base x, m/s"""
     pitch: float
-    """Of the tray about base y, rad"""
+    """Pitch of the tray about base y, rad"""
     ball_height: float
     """Above the base, m"""
     manipulability: float
