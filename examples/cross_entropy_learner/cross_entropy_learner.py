@@ -32,7 +32,7 @@ class CrossEntropyLearner:
         shape = (len(task.axes), task.observation_size + 1)
         self._state = {
             'mean': np.zeros(shape), 'std': np.full(shape, settings.initial_std),
-            'tried': np.zeros((0, *shape)), 'returns': np.zeros(0)}
+            'tried': np.zeros((0, *shape)), 'scores': np.zeros(0)}
         self._candidate = self._state['mean']
 
     def begin(self) -> int:
@@ -54,11 +54,12 @@ class CrossEntropyLearner:
         """See Learner."""
         state = self._state
         state['tried'] = np.append(state['tried'], self._candidate[np.newaxis], axis=0)
-        state['returns'] = np.append(state['returns'], sum(episode.rewards))
-        if len(state['returns']) >= self.settings.population:
-            best = state['tried'][np.argsort(state['returns'])[-self.settings.elites:]]
+        score = len(episode) + sum(episode.rewards)  # first how long it went well, then how well
+        state['scores'] = np.append(state['scores'], score)
+        if len(state['scores']) >= self.settings.population:
+            best = state['tried'][np.argsort(state['scores'])[-self.settings.elites:]]
             state.update(mean=best.mean(axis=0), std=np.maximum(best.std(axis=0), self.settings.std_min),
-                         tried=state['tried'][:0], returns=state['returns'][:0])
+                         tried=state['tried'][:0], scores=state['scores'][:0])
         self.episode += 1
         return {'train/std': float(state['std'].mean())}
 
@@ -70,7 +71,7 @@ class CrossEntropyLearner:
         """See Learner."""
         if tensors.keys() != self._state.keys():
             raise ValueError(f'it should hold the tensors {", ".join(self._state)}, not {", ".join(tensors)}')
-        rows = len(tensors['returns'])
+        rows = len(tensors['scores'])
         for name, own in self._state.items():
             shape = own.shape if name in ('mean', 'std') else (rows, *own.shape[1:])
             if tensors[name].shape != shape or tensors[name].dtype != torch.float64:

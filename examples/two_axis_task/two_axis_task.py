@@ -71,9 +71,10 @@ class TwoAxis(Task):
         """See Task."""
         position, rotation = model.tray_pose(state.q)
         ball_x, ball_y, ball_z = state.ball_position
+        v_x, v_y, _ = state.ball_velocity
         return TwoAxisState(
             error=(float(position[0]) - ball_x, float(position[1]) - ball_y),
-            ball_velocity=state.ball_velocity[:2], lean=(float(rotation[0, 2]), float(rotation[1, 2])),
+            ball_velocity=(v_x, v_y), lean=(float(rotation[0, 2]), float(rotation[1, 2])),
             ball_height=ball_z, manipulability=manipulability(model.jacobian(state.q)))
 
     def observe(self, state: TwoAxisState) -> np.ndarray:

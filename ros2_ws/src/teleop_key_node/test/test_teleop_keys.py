@@ -24,6 +24,26 @@ def test_strokes(data, strokes):
     assert [stroke for i in range(len(data)) for stroke in keyboard.strokes(data[i:i + 1])] == strokes
 
 
+def test_a_task_with_two_axes_has_up_and_down():
+    assert Keyboard(unknown=()).strokes(b'\x1b[Aw\x1b[Bs') == [Stroke.UP, Stroke.UP, Stroke.DOWN, Stroke.DOWN]
+
+
+class Broken(KeyDevice):
+    """Somebody's device that makes nonsense of a press."""
+
+    @property
+    def moment(self):
+        return super().moment * float('inf')
+
+
+def test_a_device_that_makes_nonsense_is_named_and_let_go():
+    device = Broken(BALANCE)
+    sources = Sources(device, timeout=0.5)
+    with pytest.raises(ValueError, match='the device makes'):
+        sources.hear('a', [], [1, 0, 0], 0)
+    assert not KeyDevice.moment.fget(device).any()
+
+
 def test_a_silent_source_is_forgotten_and_others_stay():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
     sources.hear('a', [], [1, 0, 0], 0)
