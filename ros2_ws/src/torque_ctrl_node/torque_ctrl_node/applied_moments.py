@@ -12,13 +12,14 @@ class AppliedMoments:
 
     Args:
         node: the controller's node.
+        frame: name of the base frame.
     """
 
-    def __init__(self, node: Node):
+    def __init__(self, node: Node, frame: str):
         self._publishers = [
             node.create_publisher(topic.msg_type, topic.name, topic.qos)
             for topic in (contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)]
-        self._wrench = base_wrench()
+        self._wrench = base_wrench(frame)
         self._moments = np.zeros((len(self._publishers), 1))
 
     @property

@@ -14,13 +14,12 @@ from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
 from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
-from shared_control.robot.limits import DOF
-from shared_control.robot.model import PandaModel
-from shared_control.robot.posture import GAINS
+from shared_control.robot.model import RobotModel
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
 from shared_control_ros.wire import WireLayout
@@ -40,7 +39,8 @@ class TorqueCtrlNode:
 
     def __init__(self) -> None:
         self.node = node = Node('torque_ctrl_node')
-        gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(GAINS))
+        robot = declare_robot(node)
+        gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(robot.gains))
         self._timeout = declare(
             node, 'command_timeout', 0.1, 'A wrench older than this counts as zero.', unit='s',
             minimum=0.02, maximum=1.0)
@@ -59,22 +59,22 @@ class TorqueCtrlNode:
             'controller/enable.')
 
         self._controller = ComputedTorqueController(
-            PandaModel(), gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon, robot_compensates_gravity=compensates)
-        self._reader = JointStateReader()
+            RobotModel(robot), gains=gains, dt=CONTROL_PERIOD, horizon=horizon, robot_compensates_gravity=compensates)
+        self._reader = JointStateReader(robot)
         self._joint_states = Polled(node, contract.JOINT_STATES, raw=True)
-        self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout)
-        self._agent = WrenchInput(node, contract.AGENT_WRENCH, self._timeout)
+        self._human = WrenchInput(node, contract.HUMAN_WRENCH, self._timeout, robot.base_frame)
+        self._agent = WrenchInput(node, contract.AGENT_WRENCH, self._timeout, robot.base_frame)
         sources = {'human': self._human, 'agent': self._agent}
         self._awaited = [source for name, source in sources.items() if name in wait_for]
         self._policy_period_ns = round(POLICY_PERIOD * 1e9)
 
-        command = Float64MultiArray(data=[0.0] * DOF)
+        command = Float64MultiArray(data=[0.0] * robot.dof)
         self._command = bytearray(serialize_message(command))
         self._torque, = WireLayout(command, ('data',)).views(self._command)
         self._command_publisher = node.create_publisher(
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
-        self._applied = AppliedMoments(node)
-        self._safety = Safety(node, enabled, self._report)
+        self._applied = AppliedMoments(node, robot.base_frame)
+        self._safety = Safety(node, robot, enabled, self._report)
 
         if not enabled:
             node.get_logger().info(self._safety.problem)

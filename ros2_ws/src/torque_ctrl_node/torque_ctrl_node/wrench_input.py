@@ -18,12 +18,14 @@ class WrenchInput:
         node: the node that listens.
         topic: where the source publishes.
         timeout: age after which a wrench is stale, s.
+        frame: name of the base frame.
     """
 
-    def __init__(self, node: Node, topic: Topic, timeout: float):
+    def __init__(self, node: Node, topic: Topic, timeout: float, frame: str):
         self._node = node
         self._input = Polled(node, topic)
         self._timeout = timeout
+        self._frame = frame
         self._source = MomentSource(1)
         self.topic_name = self._input.topic_name
 
@@ -33,7 +35,7 @@ class WrenchInput:
         if message is None:
             return
         try:
-            moment, stamp_ns = moment_of(message), to_ns(message.header.stamp)
+            moment, stamp_ns = moment_of(message, self._frame), to_ns(message.header.stamp)
             self._check_age((now_ns - stamp_ns) * 1e-9)
         except ValueError as error:
             self._node.get_logger().error(
