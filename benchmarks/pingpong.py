@@ -14,7 +14,7 @@ import numpy as np
 import rclpy
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import DOF, JOINT_NAMES
+from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from std_msgs.msg import Float64MultiArray
@@ -26,7 +26,7 @@ def answer() -> None:
     node = Node('pong')
     states = Polled(node, contract.JOINT_STATES)
     publisher = node.create_publisher(Float64MultiArray, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
-    command = Float64MultiArray(data=[0.0] * DOF)
+    command = Float64MultiArray(data=[0.0] * panda().dof)
     while True:
         if states.wait(0.1) is not None:
             publisher.publish(command)
@@ -38,7 +38,8 @@ def measure(rounds: int) -> list[float]:
     node = Node('ping')
     commands = Polled(node, contract.EFFORT_COMMANDS)
     publisher = node.create_publisher(JointState, contract.JOINT_STATES.name, contract.JOINT_STATES.qos)
-    state = JointState(name=list(JOINT_NAMES), position=[0.0] * DOF, velocity=[0.0] * DOF, effort=[0.0] * DOF)
+    zeros = [0.0] * panda().dof
+    state = JointState(name=list(panda().joints), position=zeros, velocity=zeros, effort=zeros)
     state.header.frame_id = contract.BASE_FRAME
     times: list[float] = []
     while len(times) < rounds:

@@ -10,7 +10,8 @@ import pybullet
 import pytest
 from builtin_interfaces.msg import Time
 from panda_tray_description import URDF_PATH
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
+from shared_control.robot.spec_file import panda
 from shared_control_nodes.view.transforms import arm_transforms, ball_transform
 from shared_control_ros import contract
 from shared_control_ros.joints import joint_positions
@@ -96,15 +97,15 @@ def test_description_transforms_and_odometry_agree_with_the_simulator(observer, 
         assert to_ns(states[-1].header.stamp) == to_ns(balls[-1].header.stamp) == tick * 1_000_000
 
         simulated = link_poses(world)
-        q = joint_positions(states[-1])
-        seen = chained([*arm_transforms(PandaModel(), q, Time()), ball_transform(balls[-1])], contract.BASE_FRAME)
+        q = joint_positions(states[-1], panda())
+        seen = chained([*arm_transforms(RobotModel(), q, Time()), ball_transform(balls[-1])], contract.BASE_FRAME)
         parsed = forward_kinematics(robot, dict(zip(states[-1].name, states[-1].position, strict=True)))
         assert set(simulated) == set(seen) - {'panda_link0', 'ball'} == set(parsed) - {'panda_link0'}
         for link, pose in simulated.items():
             np.testing.assert_allclose(seen[link], pose, atol=TOLERANCE, err_msg=link)
             np.testing.assert_allclose(parsed[link], pose, atol=TOLERANCE, err_msg=link)
         np.testing.assert_allclose(seen['ball'][:3, 3], world.ball_state()[0], atol=TOLERANCE)
-    assert np.abs(q - joint_positions(states[0])).max() > 0.05, 'the arm was meant to move'
+    assert np.abs(q - joint_positions(states[0], panda())).max() > 0.05, 'the arm was meant to move'
 
 
 def test_check_urdf_accepts_the_description():

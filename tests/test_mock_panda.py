@@ -12,8 +12,7 @@ from geometry_msgs.msg import WrenchStamped
 from ppo_agent_node.graph_plant import GraphPlant
 from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
-from shared_control.robot.limits import JOINT_NAMES, Q_MAX, Q_MIN, QD_MAX, TORQUE_MAX
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
@@ -117,15 +116,15 @@ class TestEveryRobot:
 
         q, qd, torque = (np.array([getattr(m, field) for m in robot.states])
                          for field in ('position', 'velocity', 'effort'))
-        assert (q >= Q_MIN).all() and (q <= Q_MAX).all()
-        assert (np.abs(qd) <= QD_MAX).all()
-        assert (np.abs(torque) <= TORQUE_MAX).all()
+        assert (q >= panda().q_min).all() and (q <= panda().q_max).all()
+        assert (np.abs(qd) <= panda().qd_max).all()
+        assert (np.abs(torque) <= panda().torque_max).all()
         stamps = np.array([to_ns(m.header.stamp) for m in robot.states])
         assert (np.diff(torque, axis=0)[np.diff(stamps) == 1_000_000] <= 1.0 + 1e-6).all(), '1000 N m/s'
 
     def test_topics_are_those_of_the_contract(self, robot):
         robot.spin(lambda: len(robot.balls) > 5 and robot.states)
-        assert list(robot.states[-1].name) == list(JOINT_NAMES)
+        assert list(robot.states[-1].name) == list(panda().joints)
         assert robot.balls[-1].header.frame_id == robot.states[-1].header.frame_id == contract.BASE_FRAME
         stamps = [to_ns(m.header.stamp) for m in robot.balls]
         assert all(stamp % 10_000_000 == 0 for stamp in stamps) and stamps == sorted(stamps)
@@ -139,7 +138,7 @@ class TestEveryRobot:
 
         def moved():
             publisher.publish(push)
-            return np.abs(np.array(robot.states[-1].position) - Q_REFERENCE).max() > 0.02
+            return np.abs(np.array(robot.states[-1].position) - panda().home).max() > 0.02
 
         robot.spin(moved)
 

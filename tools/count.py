@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath
 FIRST_VERSION = 'ec71391'
 SOURCES = 'ros2_ws/src/'
 TIED = {
-    'axis': re.compile(r'\bm_y\b|\bm_y_|torque\.y\b|WRENCH_ROW'),
+    'axis': re.compile(r'\bm_y\b|\bm_y_|torque\.y\b(?!, torque\.z)|WRENCH_ROW'),
     'geometry': re.compile(r'\b0\.0069\b|TRAY_HALF_LENGTH|TRAY_SURFACE|TRAY_HOME_X|BALL_RADIUS *=|ON_TRAY *='),
     'robot': re.compile(r'\bDOF\b|JOINT_NAMES|Q_REFERENCE|panda_joint|\bGAINS\b'),
 }

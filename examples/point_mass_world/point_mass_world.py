@@ -2,8 +2,7 @@
 
 import numpy as np
 import pinocchio as pin
-from shared_control import Q_REFERENCE, PandaModel, Scene
-from shared_control.robot.limits import clamp_torque
+from shared_control import RobotModel, RobotSpec, Scene
 from shared_control.robot.model import GRAVITY
 
 ROLLING = 5.0 / 7.0
@@ -17,21 +16,22 @@ class PointMassWorld:
     Args:
         scene: the tray and the ball.
         dt: length of a tick, s.
+        robot: the arm.
     """
 
-    def __init__(self, scene: Scene, dt: float):
-        self.dt = dt
+    def __init__(self, scene: Scene, dt: float, robot: RobotSpec):
+        self.dt, self.spec = dt, robot
         self._edge = np.array([scene.half_length, scene.half_width])
         self._height = scene.surface + scene.ball.radius
-        self._model = PandaModel()
+        self._model = RobotModel(robot)
         self._data = self._model.pin_model.createData()
-        self._holding = self._model.gravity(Q_REFERENCE).copy()
+        self._holding = self._model.gravity(robot.home).copy()
         self.reset(np.array(scene.home))
 
     def reset(self, ball: np.ndarray) -> None:
         """See World."""
         self.effort = self._holding
-        self._q, self._qd = Q_REFERENCE.copy(), np.zeros(7)
+        self._q, self._qd = self.spec.home.copy(), np.zeros(self.spec.dof)
         self._tray_velocity = np.zeros(3)
         self._push = np.zeros(3)
         self._ball, self._ball_velocity = ball.astype(float), np.zeros(3)
@@ -53,7 +53,7 @@ class PointMassWorld:
 
     def step(self, torque: np.ndarray) -> None:
         """See World: semi-implicit Euler."""
-        self.effort = clamp_torque(torque)
+        self.effort = self.spec.clamp_torque(torque)
         pushed = self.effort + self._model.jacobian(self._q)[:3].T @ self._push
         acceleration = pin.aba(self._model.pin_model, self._data, self._q, self._qd, pushed)
         self._qd = self._qd + acceleration * self.dt
@@ -63,7 +63,7 @@ class PointMassWorld:
     def step_braked(self) -> None:
         """See World."""
         self.effort = self._holding
-        self._qd = np.zeros(7)
+        self._qd = np.zeros(self.spec.dof)
         self._move_ball()
 
     def _move_ball(self) -> None:

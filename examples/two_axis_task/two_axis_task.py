@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from shared_control import BALANCE, Key, KeyMap, PandaModel, PlantState, Scene, Task, settled
+from shared_control import BALANCE, Key, KeyMap, PlantState, RobotModel, Scene, Task, settled
 from shared_control.robot.model import manipulability
 from shared_control.tasks.task import OBSERVATION_BOUND
 
@@ -67,7 +67,7 @@ class TwoAxis(Task):
         """See Task: anywhere but at the edges."""
         return self.scene.home + random.uniform((-0.1, -0.03, 0.0), (0.1, 0.03, 0.0))
 
-    def describe(self, state: PlantState, model: PandaModel) -> TwoAxisState:
+    def describe(self, state: PlantState, model: RobotModel) -> TwoAxisState:
         """See Task."""
         position, rotation = model.tray_pose(state.q)
         ball_x, ball_y, ball_z = state.ball_position

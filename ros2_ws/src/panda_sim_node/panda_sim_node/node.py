@@ -22,6 +22,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
 from std_srvs.srv import SetBool, Trigger
@@ -42,6 +43,7 @@ class PandaSimNode:
 
     def __init__(self) -> None:
         self.node = node = Node('panda_sim_node')
+        robot = declare_robot(node)
         mode = declare(
             node, 'mode', 'lockstep', 'lockstep: a tick waits for its torque. free_running: a tick a millisecond, '
             'whatever arrives, as a robot does.', choices=('lockstep', 'free_running'))
@@ -64,11 +66,11 @@ class PandaSimNode:
                 node, 'ball_radius', Ball.radius, 'Radius of the ball.', unit='m', minimum=0.005, maximum=0.05))
 
         self._advance = self._advance_lockstep if mode == 'lockstep' else self._advance_free
-        self._world: World = load(WORLDS, physics)(replace(task.scene, ball=ball), CONTROL_PERIOD)
+        self._world: World = load(WORLDS, physics)(replace(task.scene, ball=ball), CONTROL_PERIOD, robot)
         self._world.reset(self._starts.next())
         self._states = StatePublisher(node, self._world)
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)
-        self._commands = TorqueInput(node)
+        self._commands = TorqueInput(node, robot.dof)
         self._pushes = PushInput(node, self._world, self._timeout_ticks)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)

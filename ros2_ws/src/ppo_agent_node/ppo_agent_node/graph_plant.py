@@ -11,6 +11,8 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from shared_control.plant import PlantInterrupted, PlantState
 from shared_control.rates import POLICY_PERIOD
+from shared_control.robot.spec import RobotSpec
+from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
@@ -42,10 +44,13 @@ class GraphPlant:
         axes: of the task.
         background: serves it.
         attend: called at every step and again and again while waiting; may raise to end the episode.
+        robot: the robot; the Panda when not given.
     """
 
-    def __init__(self, node: Node, axes: tuple[int, ...], background: Background, attend: Callable[[], None]):
+    def __init__(self, node: Node, axes: tuple[int, ...], background: Background, attend: Callable[[], None],
+                 robot: RobotSpec | None = None):
         self._axes = axes
+        self.spec = panda() if robot is None else robot
         self._node = node
         self._attend = attend
         self._simulator = Simulator(node, background)
@@ -56,7 +61,7 @@ class GraphPlant:
             contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.APPLIED_WRENCH)]
         self._publisher = node.create_publisher(
             contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)
-        self._wrench = base_wrench()
+        self._wrench = base_wrench(self.spec.base_frame)
         self._stamp_ns = 0
         self._last_number = 0
         self.late_steps = 0
@@ -139,12 +144,12 @@ class GraphPlant:
 
     def _is_usable(self, ball: Odometry) -> bool:
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
-        if ball.header.frame_id == contract.BASE_FRAME and math.isfinite(
+        if ball.header.frame_id == self.spec.base_frame and math.isfinite(
                 position.x + position.y + position.z + velocity.x + velocity.y + velocity.z):
             return True
         self._node.get_logger().error(
             f'dropped a message on {self._balls.topic_name}: frame_id {ball.header.frame_id!r} (expected '
-            f'{contract.BASE_FRAME!r}), position {position}, velocity {velocity}', throttle_duration_sec=1.0)
+            f'{self.spec.base_frame!r}), position {position}, velocity {velocity}', throttle_duration_sec=1.0)
         return False
 
     def _read(self, ball: Odometry) -> PlantState:
@@ -156,7 +161,7 @@ class GraphPlant:
             (velocity.x, velocity.y, velocity.z), *(moment.before(self._stamp_ns) for moment in self._moments))
 
     def _joints_at(self, stamp_ns: int) -> np.ndarray:
-        """Joint positions at a tick, (7,), rad."""
+        """Joint positions at a tick, (n,), rad."""
         deadline = time.monotonic() + JOINTS_SECONDS
         while time.monotonic() < deadline:
             serialized = self._joints.take()
@@ -164,7 +169,7 @@ class GraphPlant:
                 self._joints.wait_ready(0.05)
             elif stamp_of(serialized) == stamp_ns:
                 try:
-                    return joint_positions(deserialize_message(serialized, contract.JOINT_STATES.msg_type))
+                    return joint_positions(deserialize_message(serialized, contract.JOINT_STATES.msg_type), self.spec)
                 except ValueError as error:
                     raise PlantInterrupted(f'{self._joints.topic_name}: {error}') from error
         raise PlantInterrupted(f'no {self._joints.topic_name} with the stamp of {self._balls.topic_name}')

@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     from .env import SharedControlEnv
     from .keys import Key, KeyMap
     from .plant import Plant, PlantInterrupted, PlantState
-    from .plugins import DEVICES, LEARNERS, TASKS, WORLDS, load, names
-    from .robot.model import PandaModel
-    from .robot.posture import GAINS, Q_REFERENCE, Gains
+    from .plugins import DEVICES, LEARNERS, ROBOTS, TASKS, WORLDS, load, names
+    from .robot.model import RobotModel
+    from .robot.spec import Gains, RobotSpec
+    from .robot.spec_file import load_robot, panda
     from .scene import Ball, Box, Scene
     from .tasks.balance import BALANCE, Balance, BalanceState
     from .tasks.task import Task, TaskState, settled
@@ -39,12 +40,12 @@ if TYPE_CHECKING:
     from .world import World
 
 __all__ = [
-    'BALANCE', 'DEVICES', 'GAINS', 'LEARNERS', 'Q_REFERENCE', 'TASKS', 'WORLDS', 'Balance', 'BalanceState', 'Ball',
-    'Box', 'BulletWorld', 'Callbacks', 'ComputedTorqueController', 'Device', 'Episode', 'Evaluation', 'Gains', 'Key',
-    'KeyMap', 'Learner', 'LocalPlant', 'PandaModel', 'Person', 'Plant', 'PlantInterrupted', 'PlantState', 'Preset',
-    'Scene', 'SharedControlEnv', 'SimulatedTutor', 'Task', 'TaskState', 'TrainingRun', 'TutorProfile', 'World',
-    'as_tested', 'evaluate', 'learn', 'load', 'load_policy', 'names', 'preset', 'profile', 'save_policy', 'settled',
-    'train',
+    'BALANCE', 'DEVICES', 'LEARNERS', 'ROBOTS', 'TASKS', 'WORLDS', 'Balance', 'BalanceState', 'Ball', 'Box',
+    'BulletWorld', 'Callbacks', 'ComputedTorqueController', 'Device', 'Episode', 'Evaluation', 'Gains', 'Key',
+    'KeyMap', 'Learner', 'LocalPlant', 'Person', 'Plant', 'PlantInterrupted', 'PlantState', 'Preset', 'RobotModel',
+    'RobotSpec', 'Scene', 'SharedControlEnv', 'SimulatedTutor', 'Task', 'TaskState', 'TrainingRun', 'TutorProfile',
+    'World', 'as_tested', 'evaluate', 'learn', 'load', 'load_policy', 'load_robot', 'names', 'panda', 'preset',
+    'profile', 'save_policy', 'settled', 'train',
 ]
 
 _NAMES_IN = {
@@ -52,9 +53,10 @@ _NAMES_IN = {
     'shared_control.env': ('SharedControlEnv',),
     'shared_control.keys': ('Key', 'KeyMap'),
     'shared_control.plant': ('Plant', 'PlantInterrupted', 'PlantState'),
-    'shared_control.plugins': ('DEVICES', 'LEARNERS', 'TASKS', 'WORLDS', 'load', 'names'),
-    'shared_control.robot.model': ('PandaModel',),
-    'shared_control.robot.posture': ('GAINS', 'Gains', 'Q_REFERENCE'),
+    'shared_control.plugins': ('DEVICES', 'LEARNERS', 'ROBOTS', 'TASKS', 'WORLDS', 'load', 'names'),
+    'shared_control.robot.model': ('RobotModel',),
+    'shared_control.robot.spec': ('Gains', 'RobotSpec'),
+    'shared_control.robot.spec_file': ('load_robot', 'panda'),
     'shared_control.scene': ('Ball', 'Box', 'Scene'),
     'shared_control.tasks.balance': ('BALANCE', 'Balance', 'BalanceState'),
     'shared_control.tasks.task': ('Task', 'TaskState', 'settled'),

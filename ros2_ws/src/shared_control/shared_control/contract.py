@@ -63,13 +63,13 @@ KEYS = Topic(
     'buttons = left, right, space')
 HUMAN_WRENCH = Topic(
     'human/target_wrench', 'geometry_msgs/msg/WrenchStamped', 50, 'teleop', 'controller, agent, tutor',
-    '50 Hz, zero included', '`torque.y` = M_yh, N m')
+    '50 Hz, zero included', "moment along the task's axes, N m")
 AGENT_WRENCH = Topic(
     'agent/target_wrench', 'geometry_msgs/msg/WrenchStamped', 50, 'agent', 'controller, screens', '50 Hz',
-    '`torque.y` = M_yai, N m')
+    "moment along the task's axes, N m")
 APPLIED_WRENCH = Topic(
     'target_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent, screens', 'on change, 100 Hz',
-    '`torque.y` = M_y as applied, N m')
+    'their sum as applied, N m')
 HUMAN_APPLIED = Topic(
     'human/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent', 'with `/target_wrench`',
     "M_yh as it counted in the sum, N m: the person's part, faded when stale, before the sum is clamped")

@@ -7,7 +7,7 @@ import numpy as np
 
 from .plant import Plant
 from .rates import POLICY_PERIOD
-from .robot.model import PandaModel
+from .robot.model import RobotModel
 from .tasks.balance import BALANCE
 from .tasks.task import OBSERVATION_BOUND, Task
 
@@ -34,7 +34,7 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.plant = plant
         self.task = task
         self._scale = 0.0 * task.scale if human_only else task.scale
-        self._model = PandaModel()
+        self._model = RobotModel(plant.spec)
         self._steps = round(task.episode_seconds / POLICY_PERIOD)
         self._step = 0
         self.observation_space = observation_space(task)

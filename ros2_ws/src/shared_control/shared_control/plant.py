@@ -5,13 +5,15 @@ from typing import Protocol
 
 import numpy as np
 
+from .robot.spec import RobotSpec
+
 
 @dataclass(frozen=True, eq=False)
 class PlantState:
     """The plant at a policy tick, base frame, SI units."""
 
     q: np.ndarray
-    """Joint positions, (7,), rad"""
+    """Joint positions, (n,), rad"""
     ball_position: tuple[float, ...]
     """(3,), m"""
     ball_velocity: tuple[float, ...]
@@ -30,6 +32,9 @@ class PlantInterrupted(RuntimeError):
 
 class Plant(Protocol):
     """A plant in this process, or one reached through topics."""
+
+    spec: RobotSpec
+    """The robot."""
 
     def reset(self, seed: int | None) -> PlantState:
         """Start an episode; a ``seed`` begins the sequence of ball starts anew."""

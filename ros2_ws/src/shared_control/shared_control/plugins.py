@@ -14,6 +14,8 @@ WORLDS = 'shared_control.worlds'
 """Classes of worlds (:class:`shared_control.world.World`)."""
 LEARNERS = 'shared_control.learners'
 """Functions that make a learner (:class:`shared_control_learning.learner.Learner`)."""
+ROBOTS = 'shared_control.robots'
+"""Paths of robots' files, or functions that return one (:mod:`shared_control.robot.spec_file`)."""
 DEVICES = 'shared_control.devices'
 """Classes of devices (:class:`shared_control.teaching.device.Device`)."""
 

@@ -4,26 +4,31 @@ from typing import Protocol
 
 import numpy as np
 
+from .robot.spec import RobotSpec
+
 
 class World(Protocol):
     """An arm that takes joint torques, a tray on its flange and a ball, one tick at a time.
 
-    Made from a :class:`Scene` and the length of a tick, s; found by name (entry point of ``shared_control.worlds``).
+    Made from a :class:`Scene`, the length of a tick, s, and a :class:`RobotSpec`; found by name (entry point of
+    ``shared_control.worlds``).
 
     An episode depends on nothing that came before it, and two worlds given the same torques from the same start go
     through the same states, bit for bit. Vectors are in the base frame, in SI units.
     """
 
+    spec: RobotSpec
+    """The robot."""
     dt: float
     """Length of a tick, s."""
     effort: np.ndarray
-    """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
+    """The torque applied in the last tick, (n,), N m; after a reset the one that holds the arm."""
 
     def reset(self, ball: np.ndarray) -> None:
         """Arm at rest at the reference joints, ball at rest at ``ball``, (3,), m."""
 
     def joint_state(self) -> tuple[np.ndarray, np.ndarray]:
-        """Joint positions, rad, and velocities, rad/s, each (7,)."""
+        """Joint positions, rad, and velocities, rad/s, each (n,)."""
 
     def ball_state(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
         """The ball: position, m; quaternion x y z w; velocity, m/s; angular velocity, rad/s."""
@@ -32,7 +37,7 @@ class World(Protocol):
         """Push the tray's origin with ``force`` ((3,), N) from the next tick on, until called again."""
 
     def step(self, torque: np.ndarray) -> None:
-        """One tick with joint torques ``torque`` ((7,), N m), kept within the joints' limits."""
+        """One tick with joint torques ``torque`` ((n,), N m), kept within the joints' limits."""
 
     def step_braked(self) -> None:
         """One tick without a command: the joints' brakes hold them."""

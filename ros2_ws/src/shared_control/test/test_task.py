@@ -6,8 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from panda_tray_description import URDF_PATH
-from shared_control.robot.model import TRAY_FRAME
+from shared_control.robot.spec_file import panda
 from shared_control.scene import Box
 from shared_control.tasks.balance import BALANCE, THESIS, BalanceState
 from shared_control.tasks.task import BallStarts
@@ -59,7 +58,8 @@ def test_starts_follow_their_seed():
 
 
 def test_the_scene_is_that_of_the_urdf():
-    tray = next(link for link in ElementTree.parse(URDF_PATH).getroot().iter('link') if link.get('name') == TRAY_FRAME)
+    links = ElementTree.parse(panda().urdf).getroot().iter('link')
+    tray = next(link for link in links if link.get('name') == panda().tool_frame)
     for kind in ('visual', 'collision'):
         boxes = [(shape.find('origin').get('xyz'), shape.find('geometry/box').get('size')) for shape in tray.iter(kind)]
         assert [Box(*(tuple(map(float, text.split())) for text in box)) for box in boxes] == list(BALANCE.scene.boxes)

@@ -6,7 +6,7 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-from panda_tray_description import URDF_PATH
+from shared_control.robot.spec_file import panda
 from shared_control_bringup.launching import (
     RESPAWN_DELAY,
     SHARE,
@@ -32,7 +32,7 @@ def generate_launch_description() -> LaunchDescription:
         *environment(),
         in_namespace([
             Node(package='robot_state_publisher', executable='robot_state_publisher',
-                 parameters=[{'robot_description': URDF_PATH.read_text()}, clock],
+                 parameters=[{'robot_description': panda().urdf.read_text()}, clock],
                  remappings=[('joint_states', joints)], respawn=True, respawn_delay=RESPAWN_DELAY),
             graph_node('robot_view_node', parameters={'arm': False, **clock},
                        remappings=[('joint_states_throttle', joints)]),

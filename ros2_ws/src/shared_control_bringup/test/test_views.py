@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.spec_file import panda
 from shared_control_nodes.view.node import MARKERS, ROBOT_DESCRIPTION
 from shared_control_ros.contract import BASE_FRAME, TOPICS
 
@@ -37,7 +37,7 @@ def plotjuggler_curves():
 def test_plotjuggler_curves_are_numbers_that_are_published(curve):
     topic = max((name for name in TYPES if curve.startswith(name + '/')), key=len)
     path = curve.removeprefix(topic + '/').split('/')
-    if path[0] in JOINT_NAMES:  # PlotJuggler puts the joint before the field
+    if path[0] in panda().joints:  # PlotJuggler puts the joint before the field
         path = [path[1] + '[0]']
     assert re.fullmatch(NUMBER, field_type(TYPES[topic], path))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.stamps import to_ns
 from std_msgs.msg import Float64MultiArray
@@ -92,7 +92,7 @@ class TestWiring:
         observer.spin(sent)
 
     def test_states_are_those_of_the_arm(self, states):
-        assert list(states[-1].name) == list(JOINT_NAMES)
+        assert list(states[-1].name) == list(panda().joints)
         stamps = np.array([to_ns(m.header.stamp) for m in states])
         assert (stamps % 1_000_000 == 0).all() and (np.diff(stamps) > 0).all()
 

@@ -8,8 +8,7 @@ from geometry_msgs.msg import WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from shared_control.keys import Key, KeyMoment, KeyPresses
-from shared_control.robot.limits import JOINT_NAMES
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
@@ -42,7 +41,7 @@ class Scene:
         before = len(self.pressed)
         for _ in range(round(seconds / 0.02)):
             self.now_ns += 20_000_000
-            joints = JointState(name=list(JOINT_NAMES), position=Q_REFERENCE.tolist())
+            joints = JointState(name=list(panda().joints), position=panda().home.tolist())
             ball, wrench = Odometry(), WrenchStamped()
             for message in (joints, ball, wrench):
                 message.header.frame_id = contract.BASE_FRAME

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 from shared_control import contract
 from shared_control.cli import main
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec_file import panda
 from shared_control_records.bag.reader import read_bag
 from shared_control_records.export.frames import episode_frames
 from shared_control_records.export.lerobot import FEATURES, TASK, write_lerobot
@@ -42,7 +42,7 @@ def test_a_frame_a_policy_step_with_who_did_what(frames, lessons):
         assert frame.human[:, 0] == pytest.approx(lesson.m_y_human)
         assert frame.applied[:, 0] == pytest.approx(lesson.m_y_agent + lesson.m_y_human)
         assert frame.position_error == pytest.approx(lesson.position_error)
-        assert frame.q == pytest.approx(np.tile(Q_REFERENCE, (len(frame), 1)))
+        assert frame.q == pytest.approx(np.tile(panda().home, (len(frame), 1)))
 
 
 def test_moments_are_those_that_counted_not_those_that_were_asked_for(lessons, tmp_path):

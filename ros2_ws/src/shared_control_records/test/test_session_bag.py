@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from shared_control import contract
 from shared_control.keys import Key
-from shared_control.robot.limits import DOF
+from shared_control.robot.spec_file import panda
 from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import episode_tracks
 from shared_control_records.bag.reader import BagReadError, read_bag
@@ -63,7 +63,7 @@ def test_a_bag_of_several_blocks_with_odd_messages(recording, tmp_path, monkeypa
     assert bag.unusable == {'/joint_states': 2, '/effort_controller/commands': 1}
     usable = [state for index, state in enumerate(states) if index not in (701, 702)]
     np.testing.assert_array_equal(bag.joint_states.effort, [state.effort for state in usable])
-    assert bag.commands.torque.shape == (1999, DOF)
+    assert bag.commands.torque.shape == (1999, panda().dof)
 
 
 def test_presses_are_rising_edges_of_each_source(tmp_path):
@@ -80,7 +80,7 @@ def test_presses_are_rising_edges_of_each_source(tmp_path):
 
 def test_an_empty_bag(tmp_path):
     bag = read_bag(made.Recording().write(tmp_path / 'bag'))
-    assert bag.joint_states.q.shape == (0, DOF)
+    assert bag.joint_states.q.shape == (0, panda().dof)
     assert bag.applied.moment.shape == (0, 1)
     assert not bag.presses
     assert episode_tracks(bag) == []

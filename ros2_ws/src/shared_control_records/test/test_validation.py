@@ -5,9 +5,8 @@ import json
 import numpy as np
 import pytest
 from shared_control.control.references import cosine_reference, cosine_velocity
-from shared_control.robot.limits import DOF
-from shared_control.robot.model import PandaModel
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.model import RobotModel
+from shared_control.robot.spec_file import panda
 from shared_control_records.validation.chain import end_pose, full_chain, table_2_chain
 from shared_control_records.validation.figures import plots
 from shared_control_records.validation.model_checks import BOUND, check_model, home_figures
@@ -19,7 +18,7 @@ from shared_control_sim.bullet import BulletWorld
 
 @pytest.fixture(scope='module')
 def model():
-    return PandaModel()
+    return RobotModel()
 
 
 @pytest.fixture(scope='module')
@@ -34,7 +33,7 @@ def test_all_of_the_model_agrees(checks):
 
 
 def test_a_wrong_model_is_noticed():
-    wrong = PandaModel()
+    wrong = RobotModel()
     wrong.pin_model.jointPlacements[4].translation = np.array([0.0825 + 1e-6, 0.0, 0.0])
     wrong.pin_model.inertias[3].mass += 1e-3
     failed = [check.name for check in check_model(wrong) if not check.passed]
@@ -50,27 +49,27 @@ def test_home_is_where_the_design_has_it(model):
 
 
 def test_the_stretched_chains_are_as_long_as_their_links():
-    assert end_pose(table_2_chain(np.zeros(DOF)))[2, 3] == pytest.approx(0.333 + 0.316 + 0.384 + 0.107)
+    assert end_pose(table_2_chain(np.zeros(panda().dof)))[2, 3] == pytest.approx(0.333 + 0.316 + 0.384 + 0.107)
     np.testing.assert_allclose(
-        end_pose(full_chain(np.zeros(DOF)))[:3, 3], [0.088, 0, 0.333 + 0.316 + 0.384 - 0.107], atol=1e-12)
+        end_pose(full_chain(np.zeros(panda().dof)))[:3, 3], [0.088, 0, 0.333 + 0.316 + 0.384 - 0.107], atol=1e-12)
 
 
 def test_newton_euler_carries_a_weight_at_the_tip(model):
     """A wrench on the last link costs -J^T W (15)."""
-    still = np.zeros(DOF)
-    alone = newton_euler(model.pin_model, Q_REFERENCE, still, still, np.zeros(3), np.zeros(3))
-    np.testing.assert_allclose(alone, model.gravity(Q_REFERENCE), atol=1e-12)
-    rotation = model.tray_pose(Q_REFERENCE)[1] @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])  # of link 7
+    still = np.zeros(panda().dof)
+    alone = newton_euler(model.pin_model, panda().home, still, still, np.zeros(3), np.zeros(3))
+    np.testing.assert_allclose(alone, model.gravity(panda().home), atol=1e-12)
+    rotation = model.tray_pose(panda().home)[1] @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])  # of link 7
     weight = np.array([0.0, 0, -10])
     lever = np.array([0, 0, 0.107])
     in_link = rotation.T @ weight
-    loaded = newton_euler(model.pin_model, Q_REFERENCE, still, still, in_link, np.cross(lever, in_link))
-    np.testing.assert_allclose(loaded - alone, -model.jacobian(Q_REFERENCE)[:3].T @ weight, atol=1e-12)
+    loaded = newton_euler(model.pin_model, panda().home, still, still, in_link, np.cross(lever, in_link))
+    np.testing.assert_allclose(loaded - alone, -model.jacobian(panda().home)[:3].T @ weight, atol=1e-12)
 
 
 def test_the_reference_moves_the_tray_and_turns_nothing(model):
     reference = cosine_reference(model, 0.5, 1.0, 0.001)
-    home, rotation = (a.copy() for a in model.tray_pose(Q_REFERENCE))
+    home, rotation = (a.copy() for a in model.tray_pose(panda().home))
     for tick in (249, 499, 999):
         position, turned = model.tray_pose(reference.q[tick])
         x = 0.05 * np.sin(np.pi * (tick + 1) / 1000)

@@ -5,7 +5,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import DOF, JOINT_NAMES
+from shared_control.robot.spec import RobotSpec
 
 from . import contract
 from .serialized import set_stamp
@@ -18,9 +18,10 @@ class JointStatePublisher:
     The bytes of the message are made once and filled in again and again.
     """
 
-    def __init__(self, node: Node) -> None:
-        message = JointState(name=list(JOINT_NAMES), position=[0.0] * DOF, velocity=[0.0] * DOF, effort=[0.0] * DOF)
-        message.header.frame_id = contract.BASE_FRAME
+    def __init__(self, node: Node, spec: RobotSpec) -> None:
+        zeros = [0.0] * spec.dof
+        message = JointState(name=list(spec.joints), position=zeros, velocity=zeros, effort=zeros)
+        message.header.frame_id = spec.base_frame
         self._data = bytearray(serialize_message(message))
         self._position, self._velocity, self._effort = WireLayout(
             message, ('position', 'velocity', 'effort')).views(self._data)
@@ -31,7 +32,7 @@ class JointStatePublisher:
             contract.JOINT_STATES_THROTTLE.qos)
 
     def publish(self, stamp_ns: int, position: np.ndarray, velocity: np.ndarray, effort: np.ndarray) -> None:
-        """Publish positions (rad), velocities (rad/s) and the torques that were commanded last (N m), each (7,)."""
+        """Publish positions (rad), velocities (rad/s) and the torques that were commanded last (N m), each (n,)."""
         set_stamp(self._data, stamp_ns)
         self._position[:] = position
         self._velocity[:] = velocity

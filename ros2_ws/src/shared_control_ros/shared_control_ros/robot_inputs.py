@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from rclpy.node import Node
-from shared_control.robot.limits import DOF
 from shared_control.world import World
 from std_msgs.msg import Float64MultiArray
 
@@ -16,12 +15,13 @@ from .wire import WireLayout, read_message
 class TorqueInput(Polled):
     """Joint torques on /effort_controller/commands; unusable ones are refused with an error."""
 
-    def __init__(self, node: Node):
+    def __init__(self, node: Node, dof: int):
+        self._dof = dof
         super().__init__(node, contract.EFFORT_COMMANDS, raw=True)
-        self._layout = WireLayout(Float64MultiArray(data=[0.0] * DOF), ('data',))
+        self._layout = WireLayout(Float64MultiArray(data=[0.0] * dof), ('data',))
 
     def read(self, data: bytes) -> np.ndarray | None:
-        """Torques of a serialized command, (7,), N m; None when it is unusable."""
+        """Torques of a serialized command, (n,), N m; None when it is unusable."""
         fits = self._layout.fits(data)
         try:
             if fits:
@@ -32,11 +32,11 @@ class TorqueInput(Polled):
         except ValueError as error:
             self._refuse(str(error))
             return None
-        if torque.shape == (DOF,) and math.isfinite(torque.sum()):
+        if torque.shape == (self._dof,) and math.isfinite(torque.sum()):
             if not fits:
                 self._layout.learn(message, data)
             return torque
-        self._refuse(f'expected {DOF} finite torques, got {torque[:10].tolist()}')
+        self._refuse(f'expected {self._dof} finite torques, got {torque[:10].tolist()}')
         return None
 
     def _refuse(self, fault: str) -> None:
@@ -44,7 +44,7 @@ class TorqueInput(Polled):
             f'dropped a message on {self.topic_name}: {fault}', throttle_duration_sec=1.0)
 
     def take_torque(self) -> np.ndarray | None:
-        """The newest usable torques that wait, (7,), N m."""
+        """The newest usable torques that wait, (n,), N m."""
         message = self.take()
         return None if message is None else self.read(message)
 
@@ -74,10 +74,10 @@ class PushInput:
                 self._until = 0
             return
         force = np.array([message.wrench.force.x, message.wrench.force.y, message.wrench.force.z])
-        if message.header.frame_id != contract.BASE_FRAME or not math.isfinite(force.sum()):
+        if message.header.frame_id != self._world.spec.base_frame or not math.isfinite(force.sum()):
             self._node.get_logger().error(
                 f'dropped a message on {self._input.topic_name}: frame_id {message.header.frame_id!r} (expected '
-                f'{contract.BASE_FRAME!r}), force {force}', throttle_duration_sec=1.0)
+                f'{self._world.spec.base_frame!r}), force {force}', throttle_duration_sec=1.0)
             return
         self._world.push(force)
         self._until = tick + self._ticks

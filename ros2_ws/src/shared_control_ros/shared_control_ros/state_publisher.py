@@ -25,11 +25,11 @@ class StatePublisher:
 
     def __init__(self, node: Node, world: World, with_clock: bool = True):
         self._world = world
-        self._joints = JointStatePublisher(node)
+        self._joints = JointStatePublisher(node, world.spec)
         # The ball's frame sits at its centre with the axes of the base: which way a ball has turned is of no use,
         # and so the twist, which belongs to this frame, has the base's axes.
         self._ball = Odometry(child_frame_id=contract.BALL_FRAME)
-        self._ball.header.frame_id = contract.BASE_FRAME
+        self._ball.header.frame_id = world.spec.base_frame
         self._publish_ball = node.create_publisher(
             contract.BALL.msg_type, contract.BALL.name, contract.BALL.qos).publish
         self._clock = Clock() if with_clock else None
@@ -38,7 +38,7 @@ class StatePublisher:
                 contract.CLOCK.msg_type, contract.CLOCK.name, contract.CLOCK.qos).publish
 
     def publish(self, tick: int, stamp_ns: int, effort: np.ndarray) -> None:
-        """The state at a tick, with the torque commanded last ((7,), N m): joints at each, the rest at every tenth."""
+        """The state at a tick, with the torque commanded last ((n,), N m): joints at each, the rest at every tenth."""
         with_ball = tick % TICKS_PER_BALL == 0
         if with_ball and self._clock is not None:
             set_ns(self._clock.clock, stamp_ns)

@@ -10,10 +10,10 @@ from shared_control.wrench import COMPONENTS
 from .contract import BASE_FRAME
 
 
-def base_wrench() -> WrenchStamped:
-    """A wrench of zero in the base frame, to be filled in."""
+def base_wrench(frame: str = BASE_FRAME) -> WrenchStamped:
+    """A wrench of zero in the base's ``frame``, to be filled in."""
     wrench = WrenchStamped()
-    wrench.header.frame_id = BASE_FRAME
+    wrench.header.frame_id = frame
     return wrench
 
 
@@ -24,15 +24,15 @@ def set_moment(wrench: WrenchStamped, moment: np.ndarray, axes: tuple[int, ...] 
         setattr(getattr(wrench.wrench, part), component, value)
 
 
-def moment_of(wrench: WrenchStamped, axes: tuple[int, ...] = BALANCE.axes) -> np.ndarray:
-    """The moment along a task's axes, (k,), N m.
+def moment_of(wrench: WrenchStamped, axes: tuple[int, ...] = BALANCE.axes, frame: str = BASE_FRAME) -> np.ndarray:
+    """The moment along a task's axes in the base's ``frame``, (k,), N m.
 
     Raises:
         ValueError: the wrench is given in another frame than the base's, or a component is not finite; the message
             says which.
     """
-    if wrench.header.frame_id != BASE_FRAME:
-        raise ValueError(f'frame_id is {wrench.header.frame_id!r}, expected {BASE_FRAME!r}')
+    if wrench.header.frame_id != frame:
+        raise ValueError(f'frame_id is {wrench.header.frame_id!r}, expected {frame!r}')
     values = []
     for row in axes:
         part, component = COMPONENTS[row]

@@ -5,7 +5,7 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.spec_file import panda
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.serialized import set_stamp, stamp_of
 from shared_control_ros.stamps import set_ns
@@ -13,19 +13,19 @@ from shared_control_ros.wire import WireLayout, read_message
 
 
 def test_joints_are_found_by_name():
-    names = ['gripper', *reversed(JOINT_NAMES)]
+    names = ['gripper', *reversed(panda().joints)]
     message = JointState(name=names, position=[9.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0])
-    assert joint_positions(message).tolist() == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]
+    assert joint_positions(message, panda()).tolist() == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]
 
 
 @pytest.mark.parametrize(('message', 'reason'), [
-    (JointState(name=list(JOINT_NAMES[:6]), position=[0.0] * 6), 'panda_joint7'),
-    (JointState(name=list(JOINT_NAMES), position=[0.0] * 6), 'panda_joint7'),
-    (JointState(name=list(JOINT_NAMES), position=[np.nan] * 7), 'not finite'),
+    (JointState(name=list(panda().joints[:6]), position=[0.0] * 6), 'panda_joint7'),
+    (JointState(name=list(panda().joints), position=[0.0] * 6), 'panda_joint7'),
+    (JointState(name=list(panda().joints), position=[np.nan] * 7), 'not finite'),
 ])
 def test_unusable_joints_are_refused(message, reason):
     with pytest.raises(ValueError, match=reason):
-        joint_positions(message)
+        joint_positions(message, panda())
 
 
 @pytest.mark.parametrize('kind', [WrenchStamped, JointState])
@@ -36,7 +36,7 @@ def test_stamp_of_a_serialized_message(kind, stamp_ns):
     assert stamp_of(serialize_message(message)) == stamp_ns
 
 
-STATE = JointState(name=list(JOINT_NAMES), position=[1.0] * 7, velocity=[2.0] * 7, effort=[3.0] * 7)
+STATE = JointState(name=list(panda().joints), position=[1.0] * 7, velocity=[2.0] * 7, effort=[3.0] * 7)
 
 
 def test_what_is_filled_into_the_bytes_is_in_the_message():
@@ -53,10 +53,11 @@ def test_what_is_filled_into_the_bytes_is_in_the_message():
 
 def test_a_layout_fits_other_numbers_and_nothing_else():
     layout = WireLayout(STATE, ('position', 'velocity', 'effort'))
-    other = JointState(name=list(JOINT_NAMES), position=[np.nan] * 7, velocity=[0.0] * 7, effort=[-1.0] * 7)
+    other = JointState(name=list(panda().joints), position=[np.nan] * 7, velocity=[0.0] * 7, effort=[-1.0] * 7)
     set_ns(other.header.stamp, 5)
     assert layout.fits(serialize_message(other))
-    for change in ({'name': list(JOINT_NAMES[::-1])}, {'position': [0.0] * 6, 'velocity': [0.0] * 8}, {'effort': []}):
+    for change in ({'name': list(panda().joints[::-1])},
+                   {'position': [0.0] * 6, 'velocity': [0.0] * 8}, {'effort': []}):
         fields = {'name': other.name, 'position': other.position, 'velocity': other.velocity, 'effort': other.effort}
         assert not layout.fits(serialize_message(JointState(**{**fields, **change})))
     assert not layout.fits(b'')
@@ -65,7 +66,7 @@ def test_a_layout_fits_other_numbers_and_nothing_else():
 def test_a_layout_learns_to_overlook_the_padding_of_another_process():
     layout = WireLayout(STATE, ('position', 'velocity', 'effort'))
     foreign = bytearray(serialize_message(STATE))
-    for name in JOINT_NAMES:  # 13 bytes with the closing zero: three more up to the next length
+    for name in panda().joints:  # 13 bytes with the closing zero: three more up to the next length
         end = foreign.index(name.encode() + b'\0') + len(name) + 1
         foreign[end:end + 3] = bytes(255 - byte for byte in foreign[end:end + 3])
     assert deserialize_message(bytes(foreign), JointState) == STATE

@@ -1,14 +1,12 @@
 """PyBullet: the arm, the tray on its flange, and a ball."""
 
 from operator import itemgetter
-from pathlib import Path
 
 import numpy as np
 import pybullet
-from panda_tray_description import URDF_PATH
-from shared_control.robot.limits import DOF, JOINT_NAMES, TORQUE_MAX, clamp_torque
 from shared_control.robot.model import GRAVITY
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec import RobotSpec
+from shared_control.robot.spec_file import panda
 from shared_control.scene import Ball, Scene
 from shared_control.tasks.balance import BALANCE
 
@@ -17,7 +15,7 @@ _POSITION, _VELOCITY = itemgetter(0), itemgetter(1)
 
 
 class BulletWorld:
-    """A Panda that takes joint torques, with a ball on its tray.
+    """An arm that takes joint torques, with a ball on its tray.
 
     An episode depends on nothing that came before it: :meth:`reset` restores a saved state of the whole world,
     because PyBullet keeps contacts and torques when only bodies are put back. Two worlds given the same torques from
@@ -26,24 +24,26 @@ class BulletWorld:
     Args:
         scene: the tray and the ball.
         dt: length of a tick, s.
-        urdf: the robot's description.
+        spec: the robot; the Panda when not given.
     """
 
-    def __init__(self, scene: Scene = BALANCE.scene, dt: float = 0.001, urdf: Path = URDF_PATH):
+    def __init__(self, scene: Scene = BALANCE.scene, dt: float = 0.001, spec: RobotSpec | None = None):
+        self.spec = spec = panda() if spec is None else spec
+        self._dof = spec.dof
         self.dt = dt
         self.client = pybullet.connect(pybullet.DIRECT)
         pybullet.setGravity(0, 0, -GRAVITY, self.client)
         pybullet.setTimeStep(dt, self.client)
         flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_IGNORE_VISUAL_SHAPES
-        self.arm = pybullet.loadURDF(str(urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
+        self.arm = pybullet.loadURDF(str(spec.urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
         self._find_links()
         self._add_ball(scene.ball, scene.home)
-        for index, q in zip(self._joints, Q_REFERENCE, strict=True):
+        for index, q in zip(self._joints, spec.home, strict=True):
             pybullet.resetJointState(self.arm, index, q, 0.0, physicsClientId=self.client)
         self._holding_effort = self._gravity_torque()
         self._home = pybullet.saveState(self.client)
         self.effort = self._holding_effort
-        """The torque applied in the last tick, (7,), N m; after a reset the one that holds the arm."""
+        """The torque applied in the last tick, (n,), N m; after a reset the one that holds the arm."""
         self._brakes = False
         self._push: np.ndarray | None = None
         self.reset(np.array(scene.home))
@@ -52,8 +52,8 @@ class BulletWorld:
         count = pybullet.getNumJoints(self.arm, physicsClientId=self.client)
         info = [pybullet.getJointInfo(self.arm, i, physicsClientId=self.client) for i in range(count)]
         index = {record[1].decode(): record[0] for record in info}
-        self._joints = [index[name] for name in JOINT_NAMES]
-        self.tray = index['panda_tray_joint']
+        self._joints = [index[name] for name in self.spec.joints]
+        self.tray = next(record[0] for record in info if record[12].decode() == self.spec.tool_frame)
         for link in range(-1, count):
             pybullet.changeDynamics(
                 self.arm, link, linearDamping=0, angularDamping=0, jointDamping=0, physicsClientId=self.client)
@@ -71,9 +71,9 @@ class BulletWorld:
             self.arm, self.tray, lateralFriction=1.0, restitution=0, physicsClientId=self.client)
 
     def _gravity_torque(self) -> np.ndarray:
-        still = [0.0] * DOF
+        still = [0.0] * self._dof
         return np.array(pybullet.calculateInverseDynamics(
-            self.arm, list(Q_REFERENCE), still, still, physicsClientId=self.client))
+            self.arm, list(self.spec.home), still, still, physicsClientId=self.client))
 
     def reset(self, ball: np.ndarray) -> None:
         """Arm at rest at the reference joints, ball at rest at ``ball`` ((3,), m, base frame)."""
@@ -86,10 +86,11 @@ class BulletWorld:
         self.effort = self._holding_effort
 
     def joint_state(self) -> tuple[np.ndarray, np.ndarray]:
-        """Joint positions, rad, and velocities, rad/s, each (7,)."""
+        """Joint positions, rad, and velocities, rad/s, each (n,)."""
         states = pybullet.getJointStates(self.arm, self._joints, self.client)
         # Half the time of np.array([state[0] for state in states]).
-        return np.fromiter(map(_POSITION, states), float, DOF), np.fromiter(map(_VELOCITY, states), float, DOF)
+        count = self._dof
+        return np.fromiter(map(_POSITION, states), float, count), np.fromiter(map(_VELOCITY, states), float, count)
 
     def ball_state(self) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
         """The ball in the base frame: position, m; quaternion x y z w; velocity, m/s; angular velocity, rad/s."""
@@ -102,10 +103,10 @@ class BulletWorld:
         self._push = force if force.any() else None
 
     def step(self, torque: np.ndarray) -> None:
-        """One tick with joint torques ``torque`` ((7,), N m), kept within the joints' limits."""
+        """One tick with joint torques ``torque`` ((n,), N m), kept within the joints' limits."""
         if self._brakes:
             self._release_brakes()
-        self.effort = clamp_torque(torque)
+        self.effort = self.spec.clamp_torque(torque)
         pybullet.setJointMotorControlArray(
             self.arm, self._joints, pybullet.TORQUE_CONTROL, forces=self.effort.tolist(), physicsClientId=self.client)
         self._advance()
@@ -114,15 +115,15 @@ class BulletWorld:
         """One tick without a command: the joints' brakes hold them, as a Panda's do when its control stops."""
         if not self._brakes:
             pybullet.setJointMotorControlArray(
-                self.arm, self._joints, pybullet.VELOCITY_CONTROL, targetVelocities=[0.0] * DOF,
-                forces=list(TORQUE_MAX), physicsClientId=self.client)
+                self.arm, self._joints, pybullet.VELOCITY_CONTROL, targetVelocities=[0.0] * self._dof,
+                forces=list(self.spec.torque_max), physicsClientId=self.client)
             self._brakes = True
             self.effort = self._holding_effort
         self._advance()
 
     def _release_brakes(self) -> None:
         pybullet.setJointMotorControlArray(
-            self.arm, self._joints, pybullet.VELOCITY_CONTROL, forces=[0.0] * DOF, physicsClientId=self.client)
+            self.arm, self._joints, pybullet.VELOCITY_CONTROL, forces=[0.0] * self._dof, physicsClientId=self.client)
         self._brakes = False
 
     def _advance(self) -> None:

@@ -3,8 +3,7 @@
 from enum import Enum
 
 import numpy as np
-from shared_control.robot.limits import DOF, TORQUE_RATE_MAX
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 from shared_control.robot.reflex import command_violation, state_violation
 from shared_control.world import World
 
@@ -39,11 +38,11 @@ class EffortPanda:
 
     def __init__(self, world: World, command_timeout: float = 0.1, limit_rate: bool = True):
         self.world = world
-        self._step = TORQUE_RATE_MAX * world.dt
+        self._step = world.spec.torque_rate_max * world.dt
         self._limit_rate = limit_rate
-        self._model = PandaModel()
+        self._model = RobotModel(world.spec)
         self._timeout_ticks = round(command_timeout / world.dt)
-        self._target = np.zeros(DOF)
+        self._target = np.zeros(self.world.spec.dof)
         self.limited_ticks = 0
         """Ticks in which ``limit_rate`` held the torque back."""
         self.fault = ''
@@ -53,11 +52,11 @@ class EffortPanda:
     def _enter(self, mode: Mode) -> None:
         self.mode = mode
         self._silent_ticks = 0
-        self.torque = np.zeros(DOF)
-        """The torque it was last commanded, without gravity, (7,), N m (libfranka's ``tau_J_d``)."""
+        self.torque = np.zeros(self.world.spec.dof)
+        """The torque it was last commanded, without gravity, (n,), N m (libfranka's ``tau_J_d``)."""
 
     def tick(self, command: np.ndarray | None) -> None:
-        """One tick, with the torques ``command`` ((7,), N m) that arrived for it, if any did."""
+        """One tick, with the torques ``command`` ((n,), N m) that arrived for it, if any did."""
         q, qd = self.world.joint_state()
         if self.mode is Mode.IDLE and command is not None and self._can_start(command):
             self._enter(Mode.MOVE)
@@ -69,7 +68,7 @@ class EffortPanda:
             self.world.step_braked()
 
     def _can_start(self, command: np.ndarray) -> bool:
-        return not command_violation(command, np.zeros(DOF), self.world.dt)
+        return not command_violation(self.world.spec, command, np.zeros(self.world.spec.dof), self.world.dt)
 
     def _follow(self, command: np.ndarray | None, q: np.ndarray, qd: np.ndarray) -> None:
         if command is None:
@@ -84,7 +83,8 @@ class EffortPanda:
         if self._limit_rate:
             torque = np.minimum(np.maximum(torque, self.torque - self._step), self.torque + self._step)
             self.limited_ticks += not np.array_equal(torque, self._target)
-        self.fault = command_violation(torque, self.torque, self.world.dt) or state_violation(q, qd)
+        self.fault = (command_violation(self.world.spec, torque, self.torque, self.world.dt)
+                      or state_violation(self.world.spec, q, qd))
         if self.fault:
             self._enter(Mode.REFLEX)
         else:

@@ -8,7 +8,9 @@ from shared_control.control.moments import sum_moments
 from shared_control.plant import PlantState
 from shared_control.plugins import WORLDS, load
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
+from shared_control.robot.spec import RobotSpec
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts, Task
 from shared_control.world import World
@@ -31,11 +33,14 @@ class LocalPlant:
         task: axes, limits, scene and ball starts.
         person: who presses keys; nobody when None.
         world: name of the physics (entry point of the group ``shared_control.worlds``).
+        robot: the robot; the Panda when not given.
     """
 
-    def __init__(self, task: Task = BALANCE, person: Person | None = None, world: str = 'bullet'):
-        self.world: World = load(WORLDS, world)(task.scene, CONTROL_PERIOD)
-        self.controller = ComputedTorqueController(PandaModel(), task.axes, dt=CONTROL_PERIOD)
+    def __init__(self, task: Task = BALANCE, person: Person | None = None, world: str = 'bullet',
+                 robot: RobotSpec | None = None):
+        self.spec = panda() if robot is None else robot
+        self.world: World = load(WORLDS, world)(task.scene, CONTROL_PERIOD, self.spec)
+        self.controller = ComputedTorqueController(RobotModel(self.spec), task.axes, dt=CONTROL_PERIOD)
         self._person = person
         self._limit = task.limit
         self._none = np.zeros(len(task.axes))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController
-from shared_control.robot.model import GRAVITY, PandaModel, pitch
+from shared_control.robot.model import GRAVITY, RobotModel, pitch
 from shared_control.tasks.balance import BALANCE
 from shared_control_sim.bullet import BulletWorld
 
@@ -17,7 +17,7 @@ def world():
 
 @pytest.fixture(scope='module')
 def model():
-    return PandaModel()
+    return RobotModel()
 
 
 def start(x):

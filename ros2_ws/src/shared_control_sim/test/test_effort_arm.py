@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController
-from shared_control.robot.limits import Q_MAX, QD_MAX, TORQUE_MAX
-from shared_control.robot.model import PandaModel
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.model import RobotModel
 from shared_control.robot.reflex import command_violation, state_violation
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
@@ -17,7 +16,7 @@ JUMP = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.5, 0.0])
 
 @pytest.fixture(scope='module')
 def model():
-    return PandaModel()
+    return RobotModel()
 
 
 @pytest.fixture
@@ -33,13 +32,15 @@ def robot(world):
 
 
 def test_every_limit_has_its_name():
-    assert command_violation(STILL, STILL, 1e-3) == command_violation(JUMP, JUMP / 3, 1e-3) == ''
-    assert 'tau_j_range_violation: panda_joint1' in command_violation(TORQUE_MAX * [1.01, 1, 1, 1, 1, 1, 1], STILL, 1.0)
-    assert 'controller_torque_discontinuity' in command_violation(JUMP, STILL, 1e-3)
-    assert 'the torque of panda_joint6 jumped by 1.50 N m, 1.00 are' in command_violation(JUMP, STILL, 1e-3)
-    assert state_violation(Q_REFERENCE, QD_MAX) == ''
-    assert 'joint_position_limits_violation: panda_joint7' in state_violation(Q_MAX + [0, 0, 0, 0, 0, 0, 1e-3], STILL)
-    assert 'joint_velocity_violation: panda_joint5' in state_violation(Q_REFERENCE, -QD_MAX * [1, 1, 1, 1, 1.01, 1, 1])
+    assert command_violation(panda(), STILL, STILL, 1e-3) == command_violation(panda(), JUMP, JUMP / 3, 1e-3) == ''
+    too_strong = panda().torque_max * [1.01, 1, 1, 1, 1, 1, 1]
+    assert 'tau_j_range_violation: panda_joint1' in command_violation(panda(), too_strong, STILL, 1.0)
+    assert 'controller_torque_discontinuity' in command_violation(panda(), JUMP, STILL, 1e-3)
+    assert 'the torque of panda_joint6 jumped by 1.50 N m, 1.00 are' in command_violation(panda(), JUMP, STILL, 1e-3)
+    assert state_violation(panda(), panda().home, panda().qd_max) == ''
+    beyond, too_fast = panda().q_max + [0, 0, 0, 0, 0, 0, 1e-3], -panda().qd_max * [1, 1, 1, 1, 1.01, 1, 1]
+    assert 'joint_position_limits_violation: panda_joint7' in state_violation(panda(), beyond, STILL)
+    assert 'joint_velocity_violation: panda_joint5' in state_violation(panda(), panda().home, too_fast)
 
 
 def test_it_carries_its_own_weight_and_stays_within_a_millimetre_on_zero_torques(robot, world, model):
@@ -48,7 +49,7 @@ def test_it_carries_its_own_weight_and_stays_within_a_millimetre_on_zero_torques
         robot.tick(STILL)
     assert robot.mode is Mode.MOVE
     height = model.tray_pose(world.joint_state()[0])[0][2]
-    assert height == pytest.approx(model.tray_pose(Q_REFERENCE)[0][2], abs=1e-3)
+    assert height == pytest.approx(model.tray_pose(panda().home)[0][2], abs=1e-3)
 
 
 def test_a_jump_of_the_torque_makes_it_stop_until_it_is_told_to_recover(robot, world):
@@ -70,7 +71,7 @@ def test_a_jump_of_the_torque_makes_it_stop_until_it_is_told_to_recover(robot, w
 def test_a_joint_that_is_too_fast_makes_it_stop(robot):
     torque = STILL
     for _ in range(500):
-        torque = np.minimum(torque + [0, 0, 0, 0, 0, 0, 1.0], TORQUE_MAX)
+        torque = np.minimum(torque + [0, 0, 0, 0, 0, 0, 1.0], panda().torque_max)
         robot.tick(torque)
         if robot.mode is Mode.REFLEX:
             break
@@ -113,6 +114,6 @@ def test_late_and_lost_torques_hold_the_arm_within_its_limits(world, model):
         on_their_way = [(due, torque) for due, torque in on_their_way if due > tick]
         robot.tick(arrived[-1] if arrived else None)
         assert not robot.fault
-        assert np.abs(q - Q_REFERENCE).max() < 0.1
+        assert np.abs(q - panda().home).max() < 0.1
     assert robot.mode is Mode.MOVE
     assert robot.limited_ticks < 40, 'the limiter of the rate is for the rare case'

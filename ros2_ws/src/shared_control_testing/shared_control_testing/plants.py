@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from shared_control.plant import PlantInterrupted, PlantState
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 
 __all__ = ['fake_plant', 'good_robot']
@@ -13,6 +13,7 @@ class FakePlant:
     """A ball that rolls as the moment says; a person who holds ``human`` N m. Quick."""
 
     def __init__(self, human=0.0, falls_at=None, interrupted_at=None):
+        self.spec = panda()
         self.human, self.falls_at, self.interrupted_at = human, falls_at, interrupted_at
 
     def reset(self, seed):
@@ -32,7 +33,7 @@ class FakePlant:
     def _state(self, agent):
         z = 0.0 if self._step == self.falls_at else 0.94
         return PlantState(
-            Q_REFERENCE, (self._x, 0.0, z), (self._v, 0.0, 0.0), np.array([self.human]), agent,
+            self.spec.home, (self._x, 0.0, z), (self._v, 0.0, 0.0), np.array([self.human]), agent,
             agent + self.human)
 
     def close(self):

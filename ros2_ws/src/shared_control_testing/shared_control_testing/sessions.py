@@ -11,9 +11,8 @@ from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
 from shared_control.contract import Topic
-from shared_control.robot.limits import DOF, JOINT_NAMES
-from shared_control.robot.model import PandaModel
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.model import RobotModel
+from shared_control.robot.spec_file import panda
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 START_NS = 1_795_354_200_000_000_000
@@ -50,7 +49,7 @@ def wrench(ns: int, m_y: float, frame: str = contract.BASE_FRAME) -> Any:
 
 def joint_state(ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> Any:
     """Joints."""
-    return message('sensor_msgs/msg/JointState', header=header(ns), name=list(JOINT_NAMES), position=q, velocity=qd,
+    return message('sensor_msgs/msg/JointState', header=header(ns), name=list(panda().joints), position=q, velocity=qd,
                    effort=effort)
 
 
@@ -143,8 +142,8 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
         delay_ms: of the agent's and the human's messages; the controller takes them up a millisecond later.
     """
     recording = Recording()
-    tray_x = float(PandaModel().tray_pose(Q_REFERENCE)[0][0])
-    effort = np.full(DOF, 7.0)
+    tray_x = float(RobotModel().tray_pose(panda().home)[0][0])
+    effort = np.full(panda().dof, 7.0)
     tick = 0
     agent, human, used = 0.0, 0.0, (0.0, 0.0, 0.0)
     ticks = sum(20 * len(one.position_error) for one in lessons)
@@ -164,9 +163,9 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
             if tick % 10 == 0:
                 recording.add(contract.CLOCK, at, message(contract.CLOCK.type, clock=stamp(at)))
                 recording.add(contract.BALL, at + 1000, ball(at, tray_x - one.position_error[step]))
-            velocity = np.full(DOF, 0.0 if own_tick == 0 else 0.01)
-            recording.add(contract.JOINT_STATES, at + 10, joint_state(at, Q_REFERENCE, velocity, effort))
-            effort = np.full(DOF, 7.0) + tick * 1e-6
+            velocity = np.full(panda().dof, 0.0 if own_tick == 0 else 0.01)
+            recording.add(contract.JOINT_STATES, at + 10, joint_state(at, panda().home, velocity, effort))
+            effort = np.full(panda().dof, 7.0) + tick * 1e-6
             recording.add(contract.EFFORT_COMMANDS, at + 500_000, command(effort))
             before, used = used, (min(max(agent + human, -20.0), 20.0), human, agent)
             if used != before or tick % 10 == 0:

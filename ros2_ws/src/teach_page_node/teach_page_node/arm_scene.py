@@ -3,8 +3,7 @@
 import numpy as np
 import pinocchio as pin
 from nicegui import ui
-from shared_control.robot.limits import DOF
-from shared_control.robot.model import TRAY_FRAME, PandaModel
+from shared_control.robot.model import RobotModel
 from shared_control.scene import Scene
 
 _TRAY_COLOUR, _BALL_COLOUR, _GOAL_COLOUR, _FLOOR_COLOUR = '#3d5068', '#f2b705', '#35b37e', '#cfd8e0'
@@ -17,19 +16,20 @@ _CAMERA = {'x': -0.43, 'y': 0.82, 'z': 1.14, 'look_at_x': -0.43, 'look_at_y': 0.
 
 
 def build_scene(tray: Scene) -> ui.scene:
-    """A scene with named groups ``joint1..7``, ``ball`` (base frame) and ``shadow`` (tray frame)."""
-    model = PandaModel().pin_model
+    """A scene with named groups ``joint1``, ``joint2`` ..., ``ball`` (base frame) and ``shadow`` (tray frame)."""
+    robot = RobotModel()
+    model = robot.pin_model
     with ui.scene(grid=False, background_color='#eaf0f5', fps=_EVERY_FRAME, click_events=[],
                   camera=ui.scene.perspective_camera(fov=40)) as scene:
         scene.box(3.0, 3.0, 0.02).move(-0.2, 0.0, -0.01).material(_FLOOR_COLOUR)
         scene.sphere(tray.ball.radius, 24, 16).material(_BALL_COLOUR).with_name('ball')
         _link(scene, 0)
         with _Nested() as nested:
-            for joint in range(1, DOF + 1):
+            for joint in range(1, robot.spec.dof + 1):
                 nested.enter(_placed(scene, model.jointPlacements[joint]))
                 nested.enter(scene.group().with_name(f'joint{joint}'))
                 _link(scene, joint)
-            nested.enter(_placed(scene, model.frames[model.getFrameId(TRAY_FRAME)].placement))
+            nested.enter(_placed(scene, model.frames[model.getFrameId(robot.spec.tool_frame)].placement))
             _tray(scene, tray)
     scene.move_camera(**_CAMERA, duration=0.0)
     return scene

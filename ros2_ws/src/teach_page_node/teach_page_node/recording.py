@@ -3,7 +3,7 @@
 import numpy as np
 from shared_control import contract
 from shared_control.keys import BUTTONS
-from shared_control.robot.model import PandaModel, pitch
+from shared_control.robot.model import RobotModel, pitch
 from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series, Wrenches
 
@@ -28,7 +28,7 @@ class Recording:
         if not len(bag.joint_states.q) or not len(bag.ball.position):
             raise BagReadError(f'the bag {bag.path} has no /joint_states, or no /ball: there is nothing to see')
         self._bag = bag
-        self._model = PandaModel()
+        self._model = RobotModel()
         self._received = bag.joint_states.received_ns
         steps = np.minimum(np.diff(self._received, prepend=self._received[0]) * 1e-9, LONGEST_STILL)
         self._elapsed = np.cumsum(steps)

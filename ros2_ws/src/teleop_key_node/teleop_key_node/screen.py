@@ -91,18 +91,18 @@ def _tilt(scene: Scene, width: int) -> str:
     return _fitting(width, f'{long}   {where}', f'{tilt} {side}   {where.partition(" of ")[0]}')
 
 
-def _bar(who: str, symbol: str, m_y: float | None, scene: Scene, width: int, unicode: bool) -> str:
+def _bar(who: str, symbol: str, moment: float | None, scene: Scene, width: int, unicode: bool) -> str:
     """A moment as a bar from the middle: to the left when it tips the tray to the left."""
     label = f' {who[:8]:8} {symbol:5} '
     half = max(width // 2 - len(label), 4)
     axis = '│' if unicode else '|'
-    if m_y is None:
+    if moment is None:
         return f'{label}{"":{half}}{axis}{"":{half}}    -- N m'
-    cells = min(abs(m_y) / (2.0 * scene.moment_limit), 1.0) * half
-    half_cell = ('▌' if m_y < 0 else '▐') * (cells % 1.0 >= 0.5)
+    cells = min(abs(moment) / (2.0 * scene.moment_limit), 1.0) * half
+    half_cell = ('▌' if moment < 0 else '▐') * (cells % 1.0 >= 0.5)
     bar = '█' * int(cells) + half_cell if unicode else '#' * round(cells)
-    left, right = (bar[::-1], '') if m_y > 0 else ('', bar)
-    return f'{label}{left:>{half}}{axis}{right:<{half}}{m_y + 0.0:+6.1f} N m'
+    left, right = (bar[::-1], '') if moment > 0 else ('', bar)
+    return f'{label}{left:>{half}}{axis}{right:<{half}}{moment + 0.0:+6.1f} N m'
 
 
 def _share(scene: Scene, width: int, unicode: bool) -> str:

@@ -9,8 +9,7 @@ import pytest
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import JOINT_NAMES
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from std_srvs.srv import SetBool, Trigger
 
@@ -74,7 +73,7 @@ def test_suspended_the_person_lets_go(graph, start_in_terminal):
 def test_the_screen_shows_the_lesson(graph, start_in_terminal):
     terminal = start_in_terminal('characters:=ascii')
     terminal.expect('[ WAITING FOR THE SIMULATOR ]')
-    joints = JointState(name=list(reversed(JOINT_NAMES)), position=list(reversed(Q_REFERENCE)))
+    joints = JointState(name=list(reversed(panda().joints)), position=list(reversed(panda().home)))
     ball = Odometry()
     ball.header.frame_id = 'panda_link0'
     ball.pose.pose.position.x, ball.pose.pose.position.z = -0.385, 0.93

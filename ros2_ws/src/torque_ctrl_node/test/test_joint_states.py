@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.spec_file import panda
 from torque_ctrl_node.joint_states import JointStateReader
 
 
-def message(names=JOINT_NAMES, position=None):
+def message(names=panda().joints, position=None):
     count = len(names)
     position = [float(i) for i in range(count)] if position is None else position
     return JointState(name=list(names), position=position, velocity=[0.1] * count, effort=[0.2] * count)
@@ -19,23 +19,23 @@ def data(*arguments):
 
 
 def test_order_follows_the_names_not_the_indices():
-    reader = JointStateReader()
-    q, _, _ = reader.read(data(('finger', *reversed(JOINT_NAMES))))
+    reader = JointStateReader(panda())
+    q, _, _ = reader.read(data(('finger', *reversed(panda().joints))))
     np.testing.assert_array_equal(q, [7, 6, 5, 4, 3, 2, 1])
     for _ in range(2):  # as any, and as it is known to be laid out
         np.testing.assert_array_equal(reader.read(data())[0], range(7))
-    np.testing.assert_array_equal(reader.read(data(JOINT_NAMES[::-1]))[0], range(6, -1, -1))
+    np.testing.assert_array_equal(reader.read(data(panda().joints[::-1]))[0], range(6, -1, -1))
 
 
 @pytest.mark.parametrize(('bad', 'named'), [
-    (data(JOINT_NAMES[:6]), 'panda_joint7'),
-    (data(JOINT_NAMES, [0.0] * 5), 'position has 5 values'),
-    (data(JOINT_NAMES, [0.0] * 6 + [float('nan')]), 'not finite'),
+    (data(panda().joints[:6]), 'panda_joint7'),
+    (data(panda().joints, [0.0] * 5), 'position has 5 values'),
+    (data(panda().joints, [0.0] * 6 + [float('nan')]), 'not finite'),
     (data()[:60], 'no JointState'),
     (b'', 'no JointState'),
 ], ids=['a joint missing', 'positions missing', 'not finite', 'cut', 'empty'])
 def test_what_is_missing_is_named(bad, named):
-    reader = JointStateReader()
+    reader = JointStateReader(panda())
     for _ in range(2):
         with pytest.raises(ValueError, match=named):
             reader.read(bad)

@@ -9,16 +9,15 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import WrenchStamped
 from sensor_msgs.msg import JointState
 from shared_control.control.computed_torque import ComputedTorqueController
-from shared_control.robot.limits import JOINT_NAMES
-from shared_control.robot.model import PandaModel
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.model import RobotModel
+from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns, to_ns
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 
-MODEL = PandaModel()
-GRAVITY = MODEL.gravity(Q_REFERENCE).copy()
+MODEL = RobotModel()
+GRAVITY = MODEL.gravity(panda().home).copy()
 
 
 class Robot:
@@ -57,7 +56,7 @@ class Robot:
 
     def state(self, **changes):
         message = JointState(
-            name=list(JOINT_NAMES), position=Q_REFERENCE.tolist(), velocity=[0.0] * 7, effort=GRAVITY.tolist())
+            name=list(panda().joints), position=panda().home.tolist(), velocity=[0.0] * 7, effort=GRAVITY.tolist())
         for name, value in changes.items():
             setattr(message, name, value)
         set_ns(message.header.stamp, self.now_ns)
@@ -88,12 +87,12 @@ class Robot:
 
     def moment(self):
         """M_y that the torque of the next tick contains, N m."""
-        lever = MODEL.jacobian(Q_REFERENCE)[4]
+        lever = MODEL.jacobian(panda().home)[4]
         return float((self.tick() - GRAVITY) @ lever / (lever @ lever))
 
 
 def expected(m_y):
-    return ComputedTorqueController(PandaModel()).torque(Q_REFERENCE, np.zeros(7), GRAVITY, np.array([m_y]))
+    return ComputedTorqueController(RobotModel()).torque(panda().home, np.zeros(7), GRAVITY, np.array([m_y]))
 
 
 @pytest.fixture(scope='class')
@@ -241,7 +240,7 @@ class TestSafety:
         assert self.answers(robot_at_rest) == []
 
     def test_is_not_enabled_far_from_the_reference(self, robot_at_rest):
-        far = Q_REFERENCE + [0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0]
+        far = panda().home + [0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0]
         response = self.enable(robot_at_rest, position=far.tolist())
         assert not response.success and 'panda_joint4 is 0.50 rad off' in response.message
         assert self.answers(robot_at_rest) == []

@@ -13,14 +13,15 @@ class AppliedMoments:
     Args:
         node: the controller's node.
         axes: of the task.
+        frame: name of the base frame.
     """
 
-    def __init__(self, node: Node, axes: tuple[int, ...]):
+    def __init__(self, node: Node, axes: tuple[int, ...], frame: str):
         self._axes = axes
         self._publishers = [
             node.create_publisher(topic.msg_type, topic.name, topic.qos)
             for topic in (contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)]
-        self._wrench = base_wrench()
+        self._wrench = base_wrench(frame)
         self._moments = np.zeros((len(self._publishers), len(axes)))
 
     @property

@@ -4,23 +4,24 @@ import math
 
 import numpy as np
 from sensor_msgs.msg import JointState
-from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.spec import RobotSpec
 from shared_control_ros.wire import WireLayout, read_message
 
 FIELDS = ('position', 'velocity', 'effort')
 
 
 class JointStateReader:
-    """Picks ``panda_joint1..7`` out of serialized joint states by name, whatever their order.
+    """Picks the robot's joints out of serialized joint states by name, whatever their order.
 
     States that name just these joints in this order are read as the last such one was laid out.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, spec: RobotSpec) -> None:
+        self._joints = list(spec.joints)
         self._layout: WireLayout | None = None
 
     def read(self, data: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Positions (rad), velocities (rad/s) and efforts (N m), each (7,).
+        """Positions (rad), velocities (rad/s) and efforts (N m), each (n,).
 
         Raises:
             ValueError: it is no JointState, a joint or a value is missing, or a value is not finite; the message says
@@ -41,7 +42,7 @@ class JointStateReader:
         for name in FIELDS:
             if len(getattr(message, name)) != count:
                 raise ValueError(f'{name} has {len(getattr(message, name))} values for {count} joints')
-        if list(message.name) == list(JOINT_NAMES):
+        if list(message.name) == self._joints:
             self._remember(message, data)
         return tuple(np.array(getattr(message, name))[order] for name in FIELDS)
 
@@ -51,9 +52,8 @@ class JointStateReader:
             self._layout = WireLayout(message, FIELDS)
             self._layout.learn(message, data)
 
-    @staticmethod
-    def _find(names: list[str]) -> list[int]:
-        missing = [name for name in JOINT_NAMES if name not in names]
+    def _find(self, names: list[str]) -> list[int]:
+        missing = [name for name in self._joints if name not in names]
         if missing:
             raise ValueError(f'no joint {missing[0]!r} among {list(names)}')
-        return [names.index(name) for name in JOINT_NAMES]
+        return [names.index(name) for name in self._joints]

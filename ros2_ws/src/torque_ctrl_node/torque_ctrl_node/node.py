@@ -15,13 +15,12 @@ from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
 from shared_control.plugins import TASKS, load, names
 from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
-from shared_control.robot.limits import DOF
-from shared_control.robot.model import PandaModel
-from shared_control.robot.posture import GAINS
+from shared_control.robot.model import RobotModel
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
 from shared_control_ros.wire import WireLayout
@@ -41,7 +40,8 @@ class TorqueCtrlNode:
 
     def __init__(self) -> None:
         self.node = node = Node('torque_ctrl_node')
-        gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(GAINS))
+        robot = declare_robot(node)
+        gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(robot.gains))
         task = load(TASKS, declare(
             node, 'task', 'balance', 'The task: along which axes moments count.', choices=names(TASKS)))()
         self._timeout = declare(
@@ -64,23 +64,23 @@ class TorqueCtrlNode:
             'controller/enable.')
 
         self._controller = ComputedTorqueController(
-            PandaModel(), task.axes, gains=GAINS[gains], dt=CONTROL_PERIOD, horizon=horizon,
+            RobotModel(robot), task.axes, gains=gains, dt=CONTROL_PERIOD, horizon=horizon,
             robot_compensates_gravity=compensates)
-        self._reader = JointStateReader()
+        self._reader = JointStateReader(robot)
         self._joint_states = Polled(node, contract.JOINT_STATES, raw=True)
-        self._human = WrenchInput(node, contract.HUMAN_WRENCH, task.axes, self._timeout)
-        self._agent = WrenchInput(node, contract.AGENT_WRENCH, task.axes, self._timeout)
+        self._human = WrenchInput(node, contract.HUMAN_WRENCH, task.axes, self._timeout, robot.base_frame)
+        self._agent = WrenchInput(node, contract.AGENT_WRENCH, task.axes, self._timeout, robot.base_frame)
         sources = {'human': self._human, 'agent': self._agent}
         self._awaited = [source for name, source in sources.items() if name in wait_for]
         self._policy_period_ns = round(POLICY_PERIOD * 1e9)
 
-        command = Float64MultiArray(data=[0.0] * DOF)
+        command = Float64MultiArray(data=[0.0] * robot.dof)
         self._command = bytearray(serialize_message(command))
         self._torque, = WireLayout(command, ('data',)).views(self._command)
         self._command_publisher = node.create_publisher(
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
-        self._applied = AppliedMoments(node, task.axes)
-        self._safety = Safety(node, enabled, self._report)
+        self._applied = AppliedMoments(node, task.axes, robot.base_frame)
+        self._safety = Safety(node, robot, enabled, self._report)
 
         if not enabled:
             node.get_logger().info(self._safety.problem)

@@ -7,8 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD
-from shared_control.robot.limits import JOINT_NAMES
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec import RobotSpec
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from std_srvs.srv import SetBool, Trigger
@@ -30,18 +29,20 @@ class Safety:
     Args:
         node: the controller's node; serves ``controller/enable``, ``controller/emergency_stop`` and
             ``controller/reset_emergency_stop``, and subscribes to ``emergency_stop``.
+        spec: the robot.
         enabled: from the start.
         on_change: called after each change.
     """
 
-    def __init__(self, node: Node, enabled: bool, on_change: Callable[[], None]):
+    def __init__(self, node: Node, spec: RobotSpec, enabled: bool, on_change: Callable[[], None]):
         self._node = node
+        self._spec = spec
         self._on_change = on_change
         self.enabled = enabled
         """Whether torques are computed and sent."""
         self.stopping_ticks = 0
         """For so many more ticks the arm is to be brought to rest."""
-        self._q = Q_REFERENCE
+        self._q = spec.home
         self._q_seen = -math.inf
         self.is_stopped = False
         """Whether the emergency stop is on."""
@@ -60,7 +61,7 @@ class Safety:
         return '' if self.enabled else f'disabled: {self._enable_name} to go on'
 
     def see(self, q: np.ndarray) -> None:
-        """Joint positions while disabled, (7,), rad: they decide whether the controller may be enabled."""
+        """Joint positions while disabled, (n,), rad: they decide whether the controller may be enabled."""
         self._q = q
         self._q_seen = time.monotonic()
 
@@ -82,10 +83,10 @@ class Safety:
             return f'the emergency stop is on: call {self._reset_name} first'
         if time.monotonic() - self._q_seen > JOINTS_SECONDS:
             return f'no usable joint states on {self._node.resolve_topic_name(contract.JOINT_STATES.name)}'
-        off = np.abs(self._q - Q_REFERENCE)
+        off = np.abs(self._q - self._spec.home)
         if off.max() > START_WITHIN:
             joint = int(off.argmax())
-            return (f'{JOINT_NAMES[joint]} is {off[joint]:.2f} rad off the reference, at most {START_WITHIN} are '
+            return (f'{self._spec.joints[joint]} is {off[joint]:.2f} rad off the reference, at most {START_WITHIN} are '
                     'allowed: bring the arm there first')
         return ''
 

@@ -19,13 +19,14 @@ class WrenchInput:
         topic: where the source publishes.
         axes: of the task.
         timeout: age after which a wrench is stale, s.
+        frame: name of the base frame.
     """
 
-    def __init__(self, node: Node, topic: Topic, axes: tuple[int, ...], timeout: float):
+    def __init__(self, node: Node, topic: Topic, axes: tuple[int, ...], timeout: float, frame: str):
         self._node = node
         self._input = Polled(node, topic)
         self._timeout = timeout
-        self._axes = axes
+        self._axes, self._frame = axes, frame
         self._source = MomentSource(len(axes))
         self.topic_name = self._input.topic_name
 
@@ -35,7 +36,7 @@ class WrenchInput:
         if message is None:
             return
         try:
-            moment, stamp_ns = moment_of(message, self._axes), to_ns(message.header.stamp)
+            moment, stamp_ns = moment_of(message, self._axes, self._frame), to_ns(message.header.stamp)
             self._check_age((now_ns - stamp_ns) * 1e-9)
         except ValueError as error:
             self._node.get_logger().error(

@@ -3,9 +3,8 @@
 import numpy as np
 import pinocchio as pin
 
-from ..robot.limits import DOF, TORQUE_RATE_MAX, clamp_torque
-from ..robot.model import PandaModel
-from ..robot.posture import GAINS, Q_REFERENCE, Gains
+from ..robot.model import RobotModel
+from ..robot.spec import RobotSpec
 
 M_Y: tuple[int, ...] = (4,)
 """The row of the wrench that the thesis shares: ``W_tr = [0 0 0 0 M_y 0]``."""
@@ -14,7 +13,7 @@ M_Y: tuple[int, ...] = (4,)
 class ComputedTorqueController:
     """``tau_cmd = tau_pd + J^T W_tr + tau_g`` (39, 40), limited.
 
-    An explicit PD (27) is unstable on this arm: ``M^-1 K_d dt`` has eigenvalues up to 3.6 for the task gains at
+    An explicit PD (27) is unstable on the Panda: ``M^-1 K_d dt`` has eigenvalues up to 3.6 for the task gains at
     1 kHz, 72 for the high gains of Table 3 (stable below 2). RaiSim, which the thesis ran on, integrates its PD
     implicitly, and so does this (stable PD, Tan, Liu and Turk, 2011): with the horizon h = dt,
 
@@ -35,43 +34,46 @@ class ComputedTorqueController:
 
     Args:
         model: the robot.
-        axes: rows of the wrench at the tray (fx, fy, fz, mx, my, mz) that the moments act along, (k,).
-        gains: PD gains.
+        axes: rows of the wrench at the tool (fx, fy, fz, mx, my, mz) that the moments act along, (k,).
+        gains: name of the PD gains, of those that the robot has.
         dt: period of the control loop, s.
         horizon: h, s; dt when not given.
-        q_reference: joint positions to hold, (7,), rad.
+        q_reference: joint positions to hold, (n,), rad; the robot's home when not given.
         compensate_nonlinear: add tau_g (28, 29); off only to show what it is good for.
         robot_compensates_gravity: the robot adds G(q) itself, as franka's driver does: leave it out of the command
             and out of the prediction. C(q, qd) qd stays, as in libfranka's own examples.
     """
 
-    def __init__(self, model: PandaModel, axes: tuple[int, ...] = M_Y, gains: Gains = GAINS['task'],
-                 dt: float = 0.001, horizon: float | None = None, q_reference: np.ndarray = Q_REFERENCE,
+    def __init__(self, model: RobotModel, axes: tuple[int, ...] = M_Y, gains: str = 'task',
+                 dt: float = 0.001, horizon: float | None = None, q_reference: np.ndarray | None = None,
                  compensate_nonlinear: bool = True,
                  robot_compensates_gravity: bool = False):
         self._model = model
+        self._spec = spec = model.spec
+        kp, kd = spec.gains[gains].kp, spec.gains[gains].kd
         self._horizon = dt if horizon is None else horizon
         self._implicit = pin.Model(model.pin_model)
-        self._implicit.armature = gains.kd * self._horizon
+        self._implicit.armature = kd * self._horizon
         self._implicit_data = self._implicit.createData()
         self._jacobian_rows = [self._implicit_data.J[row] for row in axes]  # views
         self._no_moment = np.zeros(len(axes))
-        self._kp = gains.kp
-        self._kd = gains.kd
-        self._damping = gains.kp * self._horizon + gains.kd
-        self._rate = np.full(DOF, TORQUE_RATE_MAX * dt)  # with an array numpy is twice as fast as with a number
-        self._q_reference = q_reference
+        self._kp = kp
+        self._kd = kd
+        self._damping = kp * self._horizon + kd
+        # With an array numpy is twice as fast as with a number.
+        self._rate = np.full(spec.dof, spec.torque_rate_max * dt)
+        self._q_reference = spec.home if q_reference is None else q_reference
         self._compensate = compensate_nonlinear
         self._robot_compensates_gravity = robot_compensates_gravity
 
     def torque(self, q: np.ndarray, qd: np.ndarray, effort: np.ndarray, moment: np.ndarray,
                q_reference: np.ndarray | None = None, qd_reference: np.ndarray | None = None) -> np.ndarray:
-        """The torque to command, (7,), N m.
+        """The torque to command, (n,), N m.
 
         Args:
-            q: joint positions, (7,), rad.
-            qd: joint velocities, (7,), rad/s.
-            effort: the torque that the robot was last commanded, (7,), N m.
+            q: joint positions, (n,), rad.
+            qd: joint velocities, (n,), rad/s.
+            effort: the torque that the robot was last commanded, (n,), N m.
             moment: at the tray along the controller's axes, (k,), N m.
             q_reference: where to be at the end of the tick, rad; the constructor's when not given.
             qd_reference: how fast, rad/s; at rest when not given.
@@ -91,14 +93,14 @@ class ComputedTorqueController:
         torque = self._model.inverse_dynamics(q, qd, acceleration)
         if self._robot_compensates_gravity:
             torque -= self._model.gravity(q)
-        return limit_torque(torque, effort, self._rate)
+        return limit_torque(self._spec, torque, effort, self._rate)
 
     def damping_torque(self, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> np.ndarray:
-        """The torque that brings the arm to rest wherever it is, (7,), N m: K_d alone, with what compensates weight."""
+        """The torque that brings the arm to rest wherever it is, (n,), N m: K_d alone, with what compensates weight."""
         return self.torque(q, qd, effort, self._no_moment, q_reference=q + qd * self._horizon)
 
 
-def limit_torque(torque: np.ndarray, previous: np.ndarray, step: np.ndarray | float) -> np.ndarray:
-    """``torque`` kept within the joints' limits and within ``step`` (N m) of ``previous``; (7,), N m."""
+def limit_torque(spec: RobotSpec, torque: np.ndarray, previous: np.ndarray, step: np.ndarray | float) -> np.ndarray:
+    """``torque`` kept within the joints' limits and within ``step`` (N m) of ``previous``; (n,), N m."""
     limited = np.maximum(torque, previous - step)
-    return clamp_torque(np.minimum(limited, previous + step, out=limited))
+    return spec.clamp_torque(np.minimum(limited, previous + step, out=limited))

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..robot.model import PandaModel
-from ..robot.posture import Q_REFERENCE
+from ..robot.model import RobotModel
 
 AMPLITUDE = 0.05
 """A: how far the tray goes to either side, m (2.4)."""
@@ -18,9 +17,9 @@ class JointReference:
     """Where the joints are to be, and how fast, at the end of each tick."""
 
     q: np.ndarray
-    """(ticks, 7), rad"""
+    """(ticks, n), rad"""
     qd: np.ndarray
-    """(ticks, 7), rad/s"""
+    """(ticks, n), rad/s"""
 
 
 def cosine_velocity(seconds: np.ndarray | float, frequency: float) -> np.ndarray:
@@ -29,17 +28,17 @@ def cosine_velocity(seconds: np.ndarray | float, frequency: float) -> np.ndarray
     return np.asarray(AMPLITUDE * omega * np.cos(omega * np.asarray(seconds)))
 
 
-def cosine_reference(model: PandaModel, frequency: float, seconds: float, dt: float) -> JointReference:
+def cosine_reference(model: RobotModel, frequency: float, seconds: float, dt: float) -> JointReference:
     """The reference for ``seconds`` from the reference posture on: qd_ref = J^+ V_e (23), q_ref its integral.
 
     J is taken at q_ref, so that the reference does not depend on how well it is followed; V_e (26) holds
     :func:`cosine_velocity` along x, taken in the middle of each tick, and zero for the other five.
     """
     ticks = round(seconds / dt)
-    q, qd = np.empty((ticks, len(Q_REFERENCE))), np.empty((ticks, len(Q_REFERENCE)))
+    q, qd = np.empty((ticks, model.spec.dof)), np.empty((ticks, model.spec.dof))
     twists = np.zeros((ticks, 6))
     twists[:, 0] = cosine_velocity((np.arange(ticks) + 0.5) * dt, frequency)
-    now = Q_REFERENCE
+    now = model.spec.home
     for tick, twist in enumerate(twists):
         qd[tick] = np.linalg.pinv(model.jacobian(now)) @ twist
         q[tick] = now = now + qd[tick] * dt

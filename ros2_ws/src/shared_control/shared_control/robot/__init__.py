@@ -1,1 +1,1 @@
-"""The Franka Emika Panda: limits, gains and rigid-body model."""
+"""Robots: what they can do, and their rigid-body model."""

@@ -9,7 +9,7 @@ import numpy as np
 from ..keys import KeyMap
 from ..plant import PlantState
 from ..rates import POLICY_PERIOD
-from ..robot.model import PandaModel
+from ..robot.model import RobotModel
 from ..scene import Scene
 
 
@@ -73,7 +73,7 @@ class Task(ABC):
         """Where the ball is dropped at the start of an episode, base frame, (3,), m."""
 
     @abstractmethod
-    def describe(self, state: PlantState, model: PandaModel) -> Any:
+    def describe(self, state: PlantState, model: RobotModel) -> Any:
         """What the task looks at, a :class:`TaskState`."""
 
     @abstractmethod

@@ -10,7 +10,7 @@ import numpy as np
 from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key, KeyMoment
 from ..plant import PlantState
 from ..rates import POLICY_PERIOD
-from ..robot.model import PandaModel, pitch
+from ..robot.model import RobotModel, pitch
 from ..tasks.task import Task
 from .profiles import TutorProfile, in_episode
 
@@ -95,7 +95,7 @@ class SimulatedTutor:
     def __init__(self, profile: TutorProfile, seed: int = 0, episodes: int = 0):
         self._profile = profile
         self._episodes = episodes
-        self._model = PandaModel()
+        self._model = RobotModel()
         self._keys = KeyMoment()
         self._begin(seed)
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from shared_control.env import SharedControlEnv
 from shared_control.rates import POLICY_PERIOD
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 from shared_control.tasks.task import Task
 from shared_control_sim.local_plant import LocalPlant
 
@@ -18,7 +18,7 @@ class RecordingEnv(SharedControlEnv):
     def __init__(self, plant: LocalPlant, task: Task):
         super().__init__(plant, task)
         self._world = plant.world
-        self._robot = PandaModel()
+        self._robot = RobotModel(plant.spec)
         self._episodes: list[list[tuple[float, ...]]] = []
         self._fallen: list[bool] = []
 

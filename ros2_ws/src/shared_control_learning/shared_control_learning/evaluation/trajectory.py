@@ -6,7 +6,7 @@ import numpy as np
 from shared_control.control.references import cosine_reference
 from shared_control.plant import PlantState
 from shared_control.rates import CONTROL_PERIOD
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control_sim.local_plant import LocalPlant
@@ -26,7 +26,7 @@ class DrivenPlant(LocalPlant):
     def __init__(self, task: Task, frequency: float):
         super().__init__(task)
         self._centre = np.array(task.scene.home)
-        self._reference = cosine_reference(PandaModel(), frequency, SECONDS, CONTROL_PERIOD)
+        self._reference = cosine_reference(RobotModel(self.spec), frequency, SECONDS, CONTROL_PERIOD)
 
     def reset(self, seed: int | None = None) -> PlantState:
         """See :class:`LocalPlant`."""

@@ -11,8 +11,8 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD
-from shared_control.robot.limits import DOF
 from shared_control.robot.reflex import command_violation
+from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -49,8 +49,8 @@ class PandaBridgeNode:
         self._fault = ''
         self._command: np.ndarray | None = None
         self._command_time = 0.0
-        self._joints = JointStatePublisher(node)
-        self._commands = TorqueInput(node)
+        self._joints = JointStatePublisher(node, panda())
+        self._commands = TorqueInput(node, panda().dof)
         node.create_service(SetBool, contract.ROBOT_ENABLE_SERVICE, self._on_enable)
         node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
         self._enable_name = node.resolve_service_name(contract.ROBOT_ENABLE_SERVICE)
@@ -126,7 +126,7 @@ class PandaBridgeNode:
             return f'the arm is in mode {self._state.mode}, not {IDLE}'
         if self._command is None or self._silence() > self._timeout:
             return f'no torques on {self._commands.topic_name}: enable the controller first'
-        return command_violation(self._command, np.zeros(DOF), CONTROL_PERIOD)
+        return command_violation(panda(), self._command, np.zeros(panda().dof), CONTROL_PERIOD)
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:

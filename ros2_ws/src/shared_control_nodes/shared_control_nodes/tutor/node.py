@@ -11,6 +11,7 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
+from shared_control.robot.spec_file import panda
 from shared_control.seeds import episode_seed
 from shared_control.teaching.profiles import PROFILES, profile
 from shared_control.teaching.tutor import SimulatedTutor
@@ -70,7 +71,7 @@ class SimTutorNode:
         self._follow_lesson(to_ns(ball.header.stamp))
         if (joints := self._joints.take()) is not None:
             try:
-                self._q = joint_positions(joints)
+                self._q = joint_positions(joints, panda())
             except ValueError as error:
                 self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:

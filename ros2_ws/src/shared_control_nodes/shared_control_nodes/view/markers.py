@@ -43,19 +43,19 @@ def ball_marker(position: np.ndarray, radius: float) -> Marker:
     return marker
 
 
-def moment_markers(source: str, m_y: float, tray: np.ndarray) -> list[Marker]:
-    """A bar above the tray (``tray``: its centre, (3,), m), to the side that ``m_y`` (N m) pushes down, and its figure.
+def moment_markers(source: str, moment: float, tray: np.ndarray) -> list[Marker]:
+    """A bar above the tray (``tray``: its centre, (3,), m), to the side that ``moment`` (N m) pushes down, and its figure.
 
     A positive M_y tilts the side towards base +x down, so the bar points to where the ball will roll.
     """
     start = tray + [0.0, 0.0, BAR_HEIGHTS[source]]
     bar = _marker(f'moment {source}', 0, Marker.ARROW, MOMENT_COLOURS[source])
-    bar.points = [_point(start), _point(start + [METRES_PER_NEWTON_METRE * m_y, 0.0, 0.0])]
+    bar.points = [_point(start), _point(start + [METRES_PER_NEWTON_METRE * moment, 0.0, 0.0])]
     bar.scale = Vector3(x=0.012, y=0.024, z=0.03)  # diameters of shaft and head, length of the head
     text = _marker(f'moment {source}', 1, Marker.TEXT_VIEW_FACING, MOMENT_COLOURS[source])
     text.pose.position = _point(start + [0.0, 0.0, 0.025])
     text.scale.z = 0.025
-    text.text = f'{source} {m_y:+.1f} N m'
+    text.text = f'{source} {moment:+.1f} N m'
     return [bar, text]
 
 

@@ -9,12 +9,11 @@ from contextlib import suppress
 import numpy as np
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
-from panda_tray_description import URDF_PATH
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from shared_control.control.moments import MomentSource
 from shared_control.rates import POLICY_PERIOD
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 from shared_control.scene import Ball
 from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
@@ -54,7 +53,7 @@ class RobotViewNode:
         self._radius = declare(
             node, 'ball_radius', Ball.radius, 'Radius of the ball, as in panda_sim_node.', unit='m',
             minimum=0.005, maximum=0.05)
-        self._model = PandaModel()
+        self._model = RobotModel()
         self._boxes = BALANCE.scene.boxes
         self._balls = Polled(node, contract.BALL)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
@@ -64,7 +63,7 @@ class RobotViewNode:
         if self._with_arm:
             self._description = node.create_publisher(
                 ROBOT_DESCRIPTION.msg_type, ROBOT_DESCRIPTION.name, ROBOT_DESCRIPTION.qos)
-            self._description.publish(String(data=URDF_PATH.read_text()))
+            self._description.publish(String(data=self._model.spec.urdf.read_text()))
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
 
@@ -94,7 +93,7 @@ class RobotViewNode:
         if joints is None:
             return
         try:
-            q = joint_positions(joints)
+            q = joint_positions(joints, self._model.spec)
         except ValueError as error:
             self.node.get_logger().error(
                 f'dropped a message on {self._joints.topic_name}: {error}', throttle_duration_sec=1.0)

@@ -4,10 +4,10 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 
 
-def arm_transforms(model: PandaModel, q: np.ndarray, stamp: Time) -> list[TransformStamped]:
+def arm_transforms(model: RobotModel, q: np.ndarray, stamp: Time) -> list[TransformStamped]:
     """Every link in the frame of the link before it, as robot_state_publisher gives them."""
     transforms = []
     for parent, child, position, quaternion in model.link_transforms(q):

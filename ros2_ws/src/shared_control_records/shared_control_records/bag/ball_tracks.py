@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from shared_control import contract
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 
 from .reader import Bag
 
@@ -57,7 +57,7 @@ def _position_error(bag: Bag) -> np.ndarray:
     joints, ball = bag.joint_states, bag.ball
     if not len(joints.stamp_ns) or not len(ball.stamp_ns):
         return np.empty(len(ball.stamp_ns))
-    model = PandaModel()
+    model = RobotModel()
     index = np.searchsorted(joints.received_ns, ball.received_ns).clip(max=len(joints.received_ns) - 1)
     tray_x = np.array([model.tray_pose(q)[0][0] for q in joints.q[index]])
     return tray_x - ball.position[:, 0]

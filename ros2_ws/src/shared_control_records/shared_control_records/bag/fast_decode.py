@@ -20,10 +20,13 @@ BLOCK = 20_000
 """Messages that are decoded together; bounds the memory for undecoded ones."""
 
 
-def joint_state_layout(size: int) -> np.dtype:
-    """Stamp at the start; at the end three sequences of seven doubles, each led by its length."""
-    return _layout(size, {'stamp': (4, '<i4', 2), 'q': (size - 184, '<f8', 7), 'qd': (size - 120, '<f8', 7),
-                          'effort': (size - 56, '<f8', 7)})
+def joint_state_layout(dof: int) -> Layout:
+    """Stamp at the start; at the end three sequences of ``dof`` doubles, each led by its length."""
+    numbers = 8 * dof
+    step = numbers + 8  # a length takes four bytes, and four more up to where a double may begin
+    return lambda size: _layout(size, {
+        'stamp': (4, '<i4', 2), 'q': (size - numbers - 2 * step, '<f8', dof),
+        'qd': (size - numbers - step, '<f8', dof), 'effort': (size - numbers, '<f8', dof)})
 
 
 def wrench_layout(size: int) -> np.dtype:
@@ -31,9 +34,9 @@ def wrench_layout(size: int) -> np.dtype:
     return _layout(size, {'stamp': (4, '<i4', 2), 'force': (size - 48, '<f8', 3), 'torque': (size - 24, '<f8', 3)})
 
 
-def command_layout(size: int) -> np.dtype:
-    """Seven doubles at the end."""
-    return _layout(size, {'torque': (size - 56, '<f8', 7)})
+def command_layout(dof: int) -> Layout:
+    """``dof`` doubles at the end."""
+    return lambda size: _layout(size, {'torque': (size - 8 * dof, '<f8', dof)})
 
 
 def _layout(size: int, fields: dict[str, tuple[int, str, int]]) -> np.dtype:

@@ -12,7 +12,8 @@ from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
 from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
-from shared_control.robot.limits import DOF, JOINT_NAMES
+from shared_control.robot.spec import RobotSpec
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 
 from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
@@ -22,8 +23,6 @@ _WRENCHES = (
     contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
     contract.AGENT_APPLIED)
 _SMALLEST_WRENCH = 64
-_SMALLEST_JOINT_STATE = 192
-_SMALLEST_COMMAND = 60
 
 
 class BagReadError(OSError):
@@ -63,8 +62,8 @@ class Bag:
     """Reports on /diagnostics, by the name of the node."""
 
 
-def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes) -> Bag:
-    """Read a bag: a rosbag2 folder or a single MCAP file.
+def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes, robot: RobotSpec | None = None) -> Bag:
+    """Read a bag of ``robot`` (the Panda when not given): a rosbag2 folder or a single MCAP file.
 
     Args:
         axes: of the task, along which moments are taken from wrenches.
@@ -79,7 +78,7 @@ def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes) -> Bag:
         raise BagReadError(f'there is no bag {path}')
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
-            collector = _Collector(reader, axes)
+            collector = _Collector(reader, axes, panda() if robot is None else robot)
             for connection, received_ns, raw in reader.messages():
                 collector.add(connection, received_ns, raw)
             return collector.finish(path)
@@ -90,14 +89,15 @@ def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes) -> Bag:
 class _Collector:
     """Sorts the messages of a bag by topic, decoding them."""
 
-    def __init__(self, reader: AnyReader, axes: tuple[int, ...]):
-        self._reader, self._axes = reader, axes
+    def __init__(self, reader: AnyReader, axes: tuple[int, ...], robot: RobotSpec):
+        self._reader, self._axes, self._robot = reader, axes, robot
         self._counts = Counter({connection.topic: 0 for connection in reader.connections})
         self._unusable: Counter[str] = Counter()
         self._bulk = {
             contract.JOINT_STATES.full_name: BulkTopic(
-                self._joint_state, joint_state_layout, _SMALLEST_JOINT_STATE),
-            contract.EFFORT_COMMANDS.full_name: BulkTopic(self._command, command_layout, _SMALLEST_COMMAND),
+                self._joint_state, joint_state_layout(robot.dof), 24 + 24 * robot.dof),
+            contract.EFFORT_COMMANDS.full_name: BulkTopic(
+                self._command, command_layout(robot.dof), 4 + 8 * robot.dof),
             **{topic.full_name: BulkTopic(self._wrench, wrench_layout, _SMALLEST_WRENCH) for topic in _WRENCHES}}
         self._rows: dict[str, list[tuple[Any, ...]]] = {}
         self._decoders = {
@@ -129,8 +129,8 @@ class _Collector:
         return Bag(
             path=path, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
             joint_states=JointStates(*self._bulk_columns(
-                contract.JOINT_STATES, _no_stamps(), *(np.empty((0, DOF)) for _ in range(3)))),
-            commands=Commands(*self._bulk_columns(contract.EFFORT_COMMANDS, np.empty((0, DOF)))),
+                contract.JOINT_STATES, _no_stamps(), *(np.empty((0, self._robot.dof)) for _ in range(3)))),
+            commands=Commands(*self._bulk_columns(contract.EFFORT_COMMANDS, np.empty((0, self._robot.dof)))),
             human=self._wrenches(contract.HUMAN_WRENCH), agent=self._wrenches(contract.AGENT_WRENCH),
             applied=self._wrenches(contract.APPLIED_WRENCH),
             human_applied=self._wrenches(contract.HUMAN_APPLIED),
@@ -160,15 +160,15 @@ class _Collector:
 
     def _joint_state(self, raw: bytes) -> Row | None:
         message: Any = self._reader.deserialize(raw, contract.JOINT_STATES.type)
-        if tuple(message.name) != JOINT_NAMES or not all(
-                len(values) == DOF for values in (message.position, message.velocity, message.effort)):
+        if tuple(message.name) != self._robot.joints or not all(
+                len(values) == self._robot.dof for values in (message.position, message.velocity, message.effort)):
             return None
         stamp = message.header.stamp
         return np.array([stamp.sec, stamp.nanosec]), message.position, message.velocity, message.effort
 
     def _wrench(self, raw: bytes) -> Row | None:
         message: Any = self._reader.deserialize(raw, contract.APPLIED_WRENCH.type)
-        if message.header.frame_id != contract.BASE_FRAME:
+        if message.header.frame_id != self._robot.base_frame:
             return None
         stamp, force, torque = message.header.stamp, message.wrench.force, message.wrench.torque
         return (np.array([stamp.sec, stamp.nanosec]), np.array([force.x, force.y, force.z]),
@@ -176,7 +176,7 @@ class _Collector:
 
     def _command(self, raw: bytes) -> Row | None:
         message: Any = self._reader.deserialize(raw, contract.EFFORT_COMMANDS.type)
-        return (message.data,) if len(message.data) == DOF else None
+        return (message.data,) if len(message.data) == self._robot.dof else None
 
     def _add_keys(self, received_ns: int, message: Any) -> None:
         source = message.header.frame_id

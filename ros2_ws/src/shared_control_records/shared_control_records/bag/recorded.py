@@ -19,11 +19,11 @@ class JointStates:
     stamp_ns: np.ndarray
     """(n,)"""
     q: np.ndarray
-    """(n, 7), rad"""
+    """(n, joints), rad"""
     qd: np.ndarray
-    """(n, 7), rad/s"""
+    """(n, joints), rad/s"""
     effort: np.ndarray
-    """(n, 7), N m: what was applied last."""
+    """(n, joints), N m: what was applied last."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,7 @@ class Commands:
     received_ns: np.ndarray
     """(n,)"""
     torque: np.ndarray
-    """(n, 7), N m"""
+    """(n, joints), N m"""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from shared_control import contract
 from shared_control.rates import POLICY_PERIOD
-from shared_control.robot.model import PandaModel, pitch
+from shared_control.robot.model import RobotModel, pitch
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
@@ -73,7 +73,7 @@ def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
     end = begin + PERIOD_NS - 1
     joints, ball = _newest(bag.joint_states.stamp_ns, begin), _newest(bag.ball.stamp_ns, begin)
     q, position = bag.joint_states.q[joints], bag.ball.position[ball]
-    model = PandaModel()
+    model = RobotModel()
     poses = [(tray[0], pitch(rotation)) for tray, rotation in map(model.tray_pose, q)]
     tray_x, tilt = np.array(poses, float).reshape(-1, 2).T
     return EpisodeFrames(

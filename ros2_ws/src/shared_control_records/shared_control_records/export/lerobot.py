@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from shared_control.files import write_atomically
 from shared_control.rates import POLICY_PERIOD
-from shared_control.robot.limits import JOINT_NAMES
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 from shared_control.wrench import AXIS_NAMES
 
@@ -36,7 +36,8 @@ def _moments(who: str) -> list[str]:
 
 FEATURES: dict[str, dict[str, Any]] = {
     'observation.state': {'dtype': 'float32', 'names': [
-        *JOINT_NAMES, *(f'{name}_velocity' for name in JOINT_NAMES), 'position_error', 'ball_velocity', 'tray_pitch']},
+        *panda().joints, *(f'{name}_velocity' for name in panda().joints), 'position_error', 'ball_velocity',
+        'tray_pitch']},
     'action': {'dtype': 'float32', 'names': _moments('applied')},
     'complementary_info.action_agent': {'dtype': 'float32', 'names': _moments('agent')},
     'complementary_info.action_human': {'dtype': 'float32', 'names': _moments('human')},

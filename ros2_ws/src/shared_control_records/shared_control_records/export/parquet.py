@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from shared_control.robot.limits import DOF
 from shared_control.tasks.balance import BALANCE
 from shared_control.wrench import AXIS_NAMES
 
@@ -23,7 +22,7 @@ def write_parquet(episodes: list[EpisodeFrames], path: Path) -> None:
 
 
 def _table(episode: EpisodeFrames) -> pa.Table:
-    joints = range(DOF)
+    joints = range(episode.q.shape[1])
     columns = {
         'episode': np.full(len(episode), episode.number), 'phase': np.full(len(episode), episode.phase),
         'frame': np.arange(len(episode)), 'seconds': (episode.stamp_ns - episode.stamp_ns[0]) * 1e-9,

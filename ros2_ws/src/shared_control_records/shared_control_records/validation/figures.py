@@ -7,7 +7,7 @@ from itertools import accumulate
 import numpy as np
 from matplotlib.figure import Figure
 from shared_control.control.references import FREQUENCIES, cosine_velocity
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.spec_file import panda
 
 from ..plotting.plot import Plot
 from ..plotting.style import AGENT, BAD, FAINT, GOOD, HUMAN
@@ -111,7 +111,7 @@ def _draw_manipulability(runs: Sequence[Tracking], figure: Figure) -> None:
 def _draw_chains(figure: Figure) -> None:
     axes = figure.subplots()
     for chain, colour, label in ((full_chain, AGENT, 'Panda'), (table_2_chain, BAD, 'Table 2, same joint positions')):
-        frames = accumulate(chain(Q_REFERENCE), np.matmul, initial=np.eye(4))
+        frames = accumulate(chain(panda().home), np.matmul, initial=np.eye(4))
         points = np.array([frame[:3, 3] for frame in frames])
         axes.plot(points[:, 0], points[:, 2], 'o-', color=colour, linewidth=3, markersize=6, label=label)
         x, z = points[-1, 0], points[-1, 2]

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
-from shared_control.robot.limits import DOF, Q_MAX, Q_MIN, QD_MAX, QDD_MAX
-from shared_control.robot.model import TRAY_FRAME, PandaModel, manipulability
-from shared_control.robot.posture import Q_REFERENCE
+from shared_control.robot.model import RobotModel, manipulability
+from shared_control.robot.spec_file import panda
 
 from .chain import as_in_table_2, end_pose, full_chain, table_2_chain
 from .newton_euler import newton_euler
@@ -51,9 +50,9 @@ class HomeFigures:
     """1 - k_w^2, as the appendix has it"""
 
 
-def check_model(model: PandaModel) -> list[Check]:
+def check_model(model: RobotModel) -> list[Check]:
     """All checks of the model."""
-    checks: tuple[tuple[str, str, Callable[[PandaModel, np.random.Generator], float]], ...] = (
+    checks: tuple[tuple[str, str, Callable[[RobotModel, np.random.Generator], float]], ...] = (
         ('Table 2, (1)-(9), and the URDF without offsets: flange', 'm, and entries of R', _table_2),
         ('full chain by hand and the URDF: flange', 'm, and entries of R', _full_chain),
         ('Jacobian (14) and differences of the chain by hand (11)-(13)', 'm, and 1', _jacobian),
@@ -63,16 +62,16 @@ def check_model(model: PandaModel) -> list[Check]:
     return [Check(name, check(model, np.random.default_rng(_SEED)), unit) for name, unit, check in checks]
 
 
-def home_figures(model: PandaModel) -> HomeFigures:
+def home_figures(model: RobotModel) -> HomeFigures:
     """The reference posture, by Table 2 and as it is."""
-    table_2, full = (end_pose(chain(Q_REFERENCE))[:3, 3] for chain in (table_2_chain, full_chain))
-    k_w = manipulability(model.jacobian(Q_REFERENCE))
+    table_2, full = (end_pose(chain(model.spec.home))[:3, 3] for chain in (table_2_chain, full_chain))
+    k_w = manipulability(model.jacobian(model.spec.home))
     return HomeFigures(
         tuple(table_2.tolist()), tuple(full.tolist()), float(np.linalg.norm(table_2 - full)), k_w, 1 - k_w ** 2)
 
 
 def _postures(random: np.random.Generator) -> Iterator[np.ndarray]:
-    return (random.uniform(Q_MIN, Q_MAX) for _ in range(STATES))
+    return (random.uniform(panda().q_min, panda().q_max) for _ in range(STATES))
 
 
 def _flange(model: pin.Model, data: pin.Data, q: np.ndarray) -> np.ndarray:
@@ -81,7 +80,7 @@ def _flange(model: pin.Model, data: pin.Data, q: np.ndarray) -> np.ndarray:
     return pin.updateFramePlacement(model, data, model.getFrameId('panda_link8')).homogeneous
 
 
-def _table_2(model: PandaModel, random: np.random.Generator) -> float:
+def _table_2(model: RobotModel, random: np.random.Generator) -> float:
     straight = pin.Model(model.pin_model)
     for placement in straight.jointPlacements:
         placement.translation[0] = 0.0  # a_4, a_5, a_7: all lie along x
@@ -90,12 +89,12 @@ def _table_2(model: PandaModel, random: np.random.Generator) -> float:
         _largest(_flange(straight, data, q) - end_pose(table_2_chain(as_in_table_2(q)))) for q in _postures(random))
 
 
-def _full_chain(model: PandaModel, random: np.random.Generator) -> float:
+def _full_chain(model: RobotModel, random: np.random.Generator) -> float:
     data = model.pin_model.createData()
     return max(_largest(_flange(model.pin_model, data, q) - end_pose(full_chain(q))) for q in _postures(random))
 
 
-def _jacobian(model: PandaModel, random: np.random.Generator) -> float:
+def _jacobian(model: RobotModel, random: np.random.Generator) -> float:
     # The tray's frame sits at the flange's origin: same Jacobian in the base's axes.
     return max(_largest(model.jacobian(q) - _difference_jacobian(q)) for q in _postures(random))
 
@@ -103,8 +102,8 @@ def _jacobian(model: PandaModel, random: np.random.Generator) -> float:
 def _difference_jacobian(q: np.ndarray) -> np.ndarray:
     """(11)-(13) by central differences, (6, 7)."""
     columns = []
-    for joint in range(DOF):
-        step = np.zeros(DOF)
+    for joint in range(len(q)):
+        step = np.zeros(len(q))
         step[joint] = DIFFERENCE
         derivative = (end_pose(full_chain(q + step)) - end_pose(full_chain(q - step))) / (2 * DIFFERENCE)
         spin = derivative[:3, :3] @ end_pose(full_chain(q))[:3, :3].T  # (13)
@@ -112,13 +111,13 @@ def _difference_jacobian(q: np.ndarray) -> np.ndarray:
     return np.array(columns).T
 
 
-def _dynamics(model: PandaModel, random: np.random.Generator) -> float:
+def _dynamics(model: RobotModel, random: np.random.Generator) -> float:
     """At random speeds and accelerations, with a random wrench at the tray's origin as in (15)."""
     data = model.pin_model.createData()
-    tray = model.pin_model.frames[model.pin_model.getFrameId(TRAY_FRAME)].placement
+    tray = model.pin_model.frames[model.pin_model.getFrameId(model.spec.tool_frame)].placement
     worst = 0.0
     for q in _postures(random):
-        qd, qdd = random.uniform(-QD_MAX, QD_MAX), random.uniform(-QDD_MAX, QDD_MAX)
+        qd, qdd = (random.uniform(-most, most) for most in (model.spec.qd_max, model.spec.qdd_max))
         wrench = random.uniform(-50, 50, 6)
         theirs = pin.rnea(model.pin_model, data, q, qd, qdd) - model.jacobian(q).T @ wrench
         to_link = (model.tray_pose(q)[1] @ tray.rotation.T).T
@@ -128,7 +127,7 @@ def _dynamics(model: PandaModel, random: np.random.Generator) -> float:
     return worst
 
 
-def _manipulability(model: PandaModel, random: np.random.Generator) -> float:
+def _manipulability(model: RobotModel, random: np.random.Generator) -> float:
     def difference(q: np.ndarray) -> float:
         jacobian = model.jacobian(q)
         return abs(manipulability(jacobian) - float(np.prod(np.linalg.svd(jacobian, compute_uv=False))))

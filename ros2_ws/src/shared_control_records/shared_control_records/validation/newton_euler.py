@@ -8,7 +8,6 @@ next link. The equation numbers below name the places where the textbook's formu
 
 import numpy as np
 import pinocchio as pin
-from shared_control.robot.limits import DOF
 from shared_control.robot.model import GRAVITY
 
 _Z = np.array([0.0, 0.0, 1.0])
@@ -16,20 +15,20 @@ _Z = np.array([0.0, 0.0, 1.0])
 
 def newton_euler(model: pin.Model, q: np.ndarray, qd: np.ndarray, qdd: np.ndarray,
                  force: np.ndarray, moment: np.ndarray) -> np.ndarray:
-    """tau = NewtonEuler(q, qd, qdd, f_e, m_e) (16), (7,), N m.
+    """tau = NewtonEuler(q, qd, qdd, f_e, m_e) (16), (n,), N m.
 
     Args:
         model: where the joints' placements and the links' masses, centres and inertias are taken from; its
             algorithms are not used.
-        q, qd, qdd: joint positions, velocities and accelerations, (7,), rad, rad/s, rad/s^2.
+        q, qd, qdd: joint positions, velocities and accelerations, (n,), rad, rad/s, rad/s^2.
         force, moment: what the surroundings exert on the last link at the origin of its frame, with that frame's axes,
             (3,), N and N m.
     """
     rotations, origins = _joints(model, q)
-    inertias = [model.inertias[i + 1] for i in range(DOF)]
+    inertias = [model.inertias[i + 1] for i in range(len(q))]
     omega, alpha, acceleration = np.zeros(3), np.zeros(3), GRAVITY * _Z  # a base that falls upwards is gravity
     forces, moments = [], []
-    for i in range(DOF):
+    for i in range(len(q)):
         to_link = rotations[i].T
         acceleration = to_link @ (
             acceleration + np.cross(alpha, origins[i]) + np.cross(omega, np.cross(omega, origins[i])))  # (17)
@@ -41,9 +40,9 @@ def newton_euler(model: pin.Model, q: np.ndarray, qd: np.ndarray, qdd: np.ndarra
             acceleration + np.cross(alpha, centre) + np.cross(omega, np.cross(omega, centre))))  # (19), (20)
         moments.append(inertia @ alpha + np.cross(omega, inertia @ omega))
 
-    tau = np.zeros(DOF)
+    tau = np.zeros(len(q))
     force, moment = -force, -moment  # what the last link exerts on its surroundings
-    for i in reversed(range(DOF)):
+    for i in reversed(range(len(q))):
         force = forces[i] + force
         moment = moments[i] + np.cross(inertias[i].lever, forces[i]) + moment
         tau[i] = moment @ _Z  # (21)
@@ -55,7 +54,7 @@ def newton_euler(model: pin.Model, q: np.ndarray, qd: np.ndarray, qdd: np.ndarra
 def _joints(model: pin.Model, q: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Rotation and origin of each link's frame in the one before it."""
     rotations, origins = [], []
-    for i in range(DOF):
+    for i in range(len(q)):
         placement = model.jointPlacements[i + 1]
         c, s = np.cos(q[i]), np.sin(q[i])
         rotations.append(placement.rotation @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]))

@@ -8,7 +8,7 @@ from typing import Any
 from shared_control.control.references import FREQUENCIES, cosine_reference
 from shared_control.files import write_atomically
 from shared_control.rates import CONTROL_PERIOD
-from shared_control.robot.model import PandaModel
+from shared_control.robot.model import RobotModel
 from shared_control_sim.bullet import BulletWorld
 from tqdm import tqdm
 
@@ -78,7 +78,7 @@ class Validation:
 
 def validate() -> Validation:
     """Run all checks, with a progress bar."""
-    model, world = PandaModel(), BulletWorld()
+    model, world = RobotModel(), BulletWorld()
     runs = []
     with tqdm(total=1 + len(FREQUENCIES) * len(GAIN_SETS) * 2, unit='run', disable=None) as progress:
         progress.set_description('kinematics and dynamics')

@@ -6,8 +6,7 @@ import numpy as np
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.references import JointReference, cosine_velocity
 from shared_control.rates import CONTROL_PERIOD
-from shared_control.robot.model import PandaModel, manipulability
-from shared_control.robot.posture import GAINS
+from shared_control.robot.model import RobotModel, manipulability
 from shared_control_sim.bullet import BulletWorld
 
 SECONDS = 8.0
@@ -53,11 +52,11 @@ class Tracking:
         return _rms((self.measured - self.reference)[self.seconds >= SETTLING_SECONDS])
 
 
-def track(model: PandaModel, world: BulletWorld, gains: str, nonlinear_terms: bool, frequency: float,
+def track(model: RobotModel, world: BulletWorld, gains: str, nonlinear_terms: bool, frequency: float,
           reference: JointReference) -> Tracking:
     """Let the arm follow ``reference``, made for ``frequency`` (Hz)."""
     controller = ComputedTorqueController(
-        model, gains=GAINS[gains], dt=CONTROL_PERIOD, compensate_nonlinear=nonlinear_terms)
+        model, gains=gains, dt=CONTROL_PERIOD, compensate_nonlinear=nonlinear_terms)
     world.reset(np.array(_BESIDE_THE_TRAY))
     samples = []
     for q_reference, qd_reference in zip(reference.q, reference.qd, strict=True):

@@ -8,7 +8,7 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
-from shared_control.robot.model import PandaModel, pitch
+from shared_control.robot.model import RobotModel, pitch
 
 from .. import contract
 from ..fast_loop import Polled
@@ -29,7 +29,7 @@ class Observer:
 
     def __init__(self, node: Node):
         self._log = node.get_logger()
-        self._model = PandaModel()
+        self._model = RobotModel()
         self._joint_states = Polled(node, contract.JOINT_STATES_THROTTLE, qos_profile=_NEWEST)
         self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
         self._agent = Moment(node, contract.AGENT_WRENCH)
@@ -70,7 +70,7 @@ class Observer:
 
     def _read_joints(self, joints: JointState, scene: Scene, now: float) -> None:
         try:
-            q = joint_positions(joints)
+            q = joint_positions(joints, self._model.spec)
         except ValueError as error:
             self._drop(self._joint_states, str(error))
             return
@@ -85,8 +85,8 @@ class Observer:
         assert self._tray is not None
         position = ball.pose.pose.position
         in_base = np.array([position.x, position.y, position.z])
-        if ball.header.frame_id != contract.BASE_FRAME or not np.isfinite(in_base).all():
-            self._drop(self._ball, f'frame_id {ball.header.frame_id!r} (expected {contract.BASE_FRAME!r}), '
+        if ball.header.frame_id != self._model.spec.base_frame or not np.isfinite(in_base).all():
+            self._drop(self._ball, f'frame_id {ball.header.frame_id!r} (expected {self._model.spec.base_frame!r}), '
                                    f'position {in_base}')
             return
         origin, rotation = self._tray

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...keys import LEFT_AND_RIGHT, KeyMap
 from ...plant import PlantState
-from ...robot.model import PandaModel, manipulability, pitch
+from ...robot.model import RobotModel, manipulability, pitch
 from ...scene import Box, Scene
 from ..task import OBSERVATION_BOUND, Task, settled
 
@@ -116,7 +116,7 @@ class Balance(Task):
         """See :class:`Task`: uniform along base x."""
         return np.array([random.uniform(*BALL_START_RANGE), *self.scene.home[1:]])
 
-    def describe(self, state: PlantState, model: PandaModel) -> BalanceState:
+    def describe(self, state: PlantState, model: RobotModel) -> BalanceState:
         """See :class:`Task`."""
         position, rotation = model.tray_pose(state.q)
         return BalanceState(

@@ -1,0 +1,65 @@
+"""A robot: its joints and frames, what it can do, the posture it is held in, and how stiffly."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Gains:
+    """Joint-space PD gains, each of shape (n,)."""
+
+    kp: np.ndarray
+    """N m/rad"""
+    kd: np.ndarray
+    """N m s/rad"""
+
+
+@dataclass(frozen=True, eq=False)
+class RobotSpec:
+    """An arm of n joints; all joint vectors have shape (n,), in the order of ``joints``.
+
+    :func:`shared_control.robot.spec_file.load_robot` reads one from its file.
+    """
+
+    name: str
+    urdf: Path
+    """The description that kinematics and dynamics are taken from."""
+    joints: tuple[str, ...]
+    """Names, as in the URDF and in joint states."""
+    base_frame: str
+    """Root of the URDF; positions and wrenches are given in it."""
+    tool_frame: str
+    """Where the wrench acts: a link of the URDF."""
+    q_min: np.ndarray
+    """Lower joint positions, rad"""
+    q_max: np.ndarray
+    """Upper joint positions, rad"""
+    qd_max: np.ndarray
+    """Joint speeds, rad/s"""
+    qdd_max: np.ndarray
+    """Joint accelerations, rad/s^2"""
+    torque_max: np.ndarray
+    """Joint torques, N m"""
+    torque_rate_max: float
+    """Rate of the commanded torque, N m/s"""
+    home: np.ndarray
+    """Reference joint positions, rad"""
+    gains: dict[str, Gains]
+    """By name; ``task`` is what tasks are taught with."""
+    _torque_min: np.ndarray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, '_torque_min', -self.torque_max)
+
+    @property
+    def dof(self) -> int:
+        """n, the number of joints."""
+        return len(self.joints)
+
+    def clamp_torque(self, torque: np.ndarray) -> np.ndarray:
+        """``torque`` kept within the joints' limits, (n,), N m."""
+        # On a handful of numbers this takes a quarter of np.clip's time.
+        limited = np.maximum(torque, self._torque_min)
+        return np.minimum(limited, self.torque_max, out=limited)

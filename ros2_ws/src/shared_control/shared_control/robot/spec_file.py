@@ -1,0 +1,183 @@
+"""Reading a robot from its file, found by name or by path (docs/how_to/robot.md)."""
+
+from functools import cache
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import yaml
+
+from ..plugins import ROBOTS, load
+from .spec import Gains, RobotSpec
+
+_VECTORS = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'torque_max', 'home')
+"""Numbers for each joint; angles may be in degrees under ``<name>_deg``."""
+_ANGLES = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'home')
+_POSITIVE = ('qd_max', 'qdd_max', 'torque_max')
+_TEXTS = ('urdf', 'base_frame', 'tool_frame')
+_PACKAGE = 'package://'
+
+
+class RobotFileError(ValueError):
+    """A robot's file cannot be used; the message names the file and the key."""
+
+
+@cache
+def load_robot(name_or_path: str) -> RobotSpec:
+    """A robot by name (entry point of the group ``shared_control.robots``) or by the path of its YAML file.
+
+    The entry point gives the path of a file, or a function that returns one. What ends in .yaml or .yml or has a
+    slash in it is a path. The URDF is a path, relative to the file, or ``package://NAME/path`` in a Python package.
+
+    Raises:
+        ValueError: no robot has that name.
+        RobotFileError: the file cannot be read or used.
+    """
+    if '/' in name_or_path or Path(name_or_path).suffix in ('.yaml', '.yml'):
+        return _read(Path(name_or_path).expanduser(), Path(name_or_path).stem)
+    found = load(ROBOTS, name_or_path)
+    return _read(Path(found() if callable(found) else found), name_or_path)
+
+
+def panda() -> RobotSpec:
+    """The robot of the thesis, and the one that is meant where none is named."""
+    return load_robot('panda')
+
+
+def _read(path: Path, name: str) -> RobotSpec:
+    try:
+        content = yaml.safe_load(path.read_text())
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise RobotFileError(f'cannot read the robot file {path}: {error}') from error
+    return _File(path, content).spec(name)
+
+
+class _File:
+    """The content of a file, taken apart with errors that name the file and the key."""
+
+    def __init__(self, path: Path, content: Any):
+        self._path = path
+        if not isinstance(content, dict):
+            raise RobotFileError(f'{path}: expected keys and values, got {type(content).__name__}')
+        known = {*_TEXTS, *_VECTORS, *(f'{key}_deg' for key in _ANGLES), 'joints', 'torque_rate_max', 'gains'}
+        if unknown := [key for key in content if key not in known]:
+            raise self._error(unknown[0], f'there is no such key; there are {", ".join(sorted(known))}')
+        self._content = content
+
+    def _error(self, key: object, what: str) -> RobotFileError:
+        return RobotFileError(f'{self._path}: {key}: {what}')
+
+    def spec(self, name: str) -> RobotSpec:
+        """The whole file, checked."""
+        joints = self._joints()
+        urdf = self._urdf(self._text('urdf'))
+        base_frame, tool_frame = self._text('base_frame'), self._text('tool_frame')
+        self._check_urdf(urdf, joints, base_frame, tool_frame)
+        vectors = {key: self._vector(key, len(joints)) for key in _VECTORS}
+        self._check_limits(vectors, joints)
+        return RobotSpec(
+            name, urdf, joints, base_frame, tool_frame, torque_rate_max=self._rate(), gains=self._gains(len(joints)),
+            **vectors)
+
+    def _get(self, key: str) -> Any:
+        if key not in self._content:
+            raise self._error(key, 'is missing')
+        return self._content[key]
+
+    def _text(self, key: str) -> str:
+        value = self._get(key)
+        if not isinstance(value, str) or not value:
+            raise self._error(key, f'expected a text, got {value!r}')
+        return value
+
+    def _joints(self) -> tuple[str, ...]:
+        joints = self._get('joints')
+        if not isinstance(joints, list) or not joints or not all(isinstance(joint, str) for joint in joints):
+            raise self._error('joints', f'expected a list of names, got {joints!r}')
+        if len(set(joints)) < len(joints):
+            raise self._error('joints', f'a name occurs twice among {joints}')
+        return tuple(joints)
+
+    def _urdf(self, text: str) -> Path:
+        if not text.startswith(_PACKAGE):
+            path = self._path.parent / Path(text).expanduser()
+        else:
+            package, _, inside = text.removeprefix(_PACKAGE).partition('/')
+            if not package.isidentifier() or find_spec(package) is None:
+                raise self._error('urdf', f'there is no Python package {package!r}')
+            path = Path(str(files(package) / inside))
+        if not path.is_file():
+            raise self._error('urdf', f'there is no file {path}')
+        return path
+
+    def _check_urdf(self, urdf: Path, joints: tuple[str, ...], base_frame: str, tool_frame: str) -> None:
+        try:
+            robot = ElementTree.parse(urdf).getroot()
+        except ElementTree.ParseError as error:
+            raise self._error('urdf', f'{urdf} is not XML: {error}') from error
+        movable = [str(joint.get('name')) for joint in robot.iter('joint') if joint.get('type') not in (None, 'fixed')]
+        if missing := [joint for joint in joints if joint not in movable]:
+            raise self._error('joints', f'{missing[0]!r} is no movable joint of {urdf}, which has {movable}')
+        if others := [joint for joint in movable if joint not in joints]:
+            raise self._error('joints', f'{others[0]!r} of {urdf} is missing: it moves, too')
+        links = {str(link.get('name')) for link in robot.findall('link')}
+        for key, frame in (('base_frame', base_frame), ('tool_frame', tool_frame)):
+            if frame not in links:
+                raise self._error(key, f'{urdf} has no link {frame!r}')
+        children = {child.get('link') for child in robot.iterfind('joint/child')}
+        if base_frame in children:
+            root = ', '.join(map(repr, links - children))
+            raise self._error('base_frame', f"{base_frame!r} hangs on another link of {urdf}, whose root is {root}")
+
+    def _numbers(self, key: str, value: Any, count: int) -> np.ndarray:
+        """Finite numbers, one a joint."""
+        if not isinstance(value, list) or not all(type(number) in (int, float) for number in value):
+            raise self._error(key, f'expected a list of numbers, got {value!r}')
+        if len(value) != count:
+            raise self._error(key, f'has {len(value)} numbers for {count} joints')
+        if not np.isfinite(value).all():
+            raise self._error(key, f'a number is not finite: {value}')
+        return np.array(value, float)
+
+    def _vector(self, key: str, count: int) -> np.ndarray:
+        degrees = f'{key}_deg'
+        if degrees not in self._content:
+            return self._numbers(key, self._get(key), count)
+        if key in self._content:
+            raise self._error(degrees, f'is given beside {key}: one of them, please')
+        return np.deg2rad(self._numbers(degrees, self._content[degrees], count))
+
+    def _check_limits(self, vectors: dict[str, np.ndarray], joints: tuple[str, ...]) -> None:
+        def refuse(wrong: np.ndarray, key: str, what: str) -> None:
+            if wrong.any():
+                raise self._error(key, f'{what} at {joints[int(wrong.argmax())]}')
+
+        low, high, home = vectors['q_min'], vectors['q_max'], vectors['home']
+        refuse(low >= high, 'q_min', 'is not below q_max')
+        refuse((home < low) | (home > high), 'home', 'is not between q_min and q_max')
+        for key in _POSITIVE:
+            refuse(vectors[key] <= 0.0, key, 'is not above 0')
+
+    def _rate(self) -> float:
+        rate = self._get('torque_rate_max')
+        if type(rate) not in (int, float) or not 0.0 < rate < np.inf:
+            raise self._error('torque_rate_max', f'expected a finite number above 0, got {rate!r}')
+        return float(rate)
+
+    def _gains(self, count: int) -> dict[str, Gains]:
+        gains = self._get('gains')
+        if not isinstance(gains, dict) or 'task' not in gains:
+            raise self._error('gains', "expected gains by name, 'task' among them")
+        return {str(name): self._gain(f'gains.{name}', entry, count) for name, entry in gains.items()}
+
+    def _gain(self, key: str, entry: Any, count: int) -> Gains:
+        if not isinstance(entry, dict) or set(entry) != {'kp', 'kd'}:
+            raise self._error(key, f'expected kp and kd, got {entry!r}')
+        values = {part: self._numbers(f'{key}.{part}', entry[part], count) for part in ('kp', 'kd')}
+        for part, numbers in values.items():
+            if (numbers <= 0.0).any():
+                raise self._error(f'{key}.{part}', 'a gain is not above 0')
+        return Gains(**values)

@@ -1,0 +1,80 @@
+"""Robots from their files: the Panda's numbers to the bit, and errors that name the file and the key."""
+
+import numpy as np
+import pytest
+import yaml
+from shared_control.robot.model import RobotModel
+from shared_control.robot.spec_file import RobotFileError, load_robot, panda
+from shared_control.robot.specs import PANDA
+
+
+def test_the_panda_is_the_one_of_the_thesis():
+    assert panda().dof == 7 and panda().joints == tuple(f'panda_joint{i}' for i in range(1, 8))
+    np.testing.assert_array_equal(panda().home, np.deg2rad([0.0, -90.0, 0.0, -90.0, 0.0, 179.0, 90.0]))
+    np.testing.assert_array_equal(panda().q_max, [2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973])
+    np.testing.assert_array_equal(panda().gains['task'].kd, [25.0, 700.0, 25.0, 800.0, 25.0, 25.0, 10.0])
+    assert panda().torque_rate_max == 1000.0 and set(panda().gains) == {'task', 'high', 'low'}
+    np.testing.assert_array_equal(panda().clamp_torque(np.full(7, -1e9)), -panda().torque_max)
+
+
+def test_a_robot_is_found_by_name_or_by_path(tmp_path):
+    path = tmp_path / 'mine.yaml'
+    path.write_text(PANDA.read_text())
+    mine = load_robot(str(path))
+    assert (mine.name, panda().name) == ('mine', 'panda')
+    assert RobotModel(mine).pin_model.nq == mine.dof
+    assert load_robot('panda') is panda()
+    with pytest.raises(ValueError, match=r"no robot 'nobody'; there are .*panda"):
+        load_robot('nobody')
+
+
+def test_a_urdf_lies_beside_the_file(tmp_path):
+    (tmp_path / 'arm.urdf').write_bytes(panda().urdf.read_bytes())
+    path = tmp_path / 'mine.yaml'
+    path.write_text(yaml.safe_dump(yaml.safe_load(PANDA.read_text()) | {'urdf': 'arm.urdf'}))
+    assert load_robot(str(path)).urdf == tmp_path / 'arm.urdf'
+
+
+SEVEN = [1.0] * 7
+
+
+@pytest.mark.parametrize(('change', 'message'), [
+    ({'urdf': 'nowhere.urdf'}, r'urdf: there is no file .*nowhere\.urdf'),
+    ({'urdf': 'package://no_such_package/arm.urdf'}, "urdf: there is no Python package 'no_such_package'"),
+    ({'urdf': 3}, 'urdf: expected a text'),
+    ({'joints': ['elbow']}, "joints: 'elbow' is no movable joint of .*panda_tray.urdf"),
+    ({'joints': ['panda_joint1']}, "joints: 'panda_joint2' of .* is missing: it moves, too"),
+    ({'joints': ['panda_joint1'] * 7}, 'joints: a name occurs twice'),
+    ({'joints': []}, 'joints: expected a list of names'),
+    ({'tool_frame': 'gripper'}, "tool_frame: .* has no link 'gripper'"),
+    ({'base_frame': 'world'}, "base_frame: .* has no link 'world'"),
+    ({'base_frame': 'panda_link3'}, "base_frame: .* root is 'panda_link0'"),
+    ({'q_max': SEVEN[1:]}, 'q_max: has 6 numbers for 7 joints'),
+    ({'q_max': [-9.0, *SEVEN[1:]]}, 'q_min: is not below q_max at panda_joint1'),
+    ({'home_deg': [0.0, 500.0, *SEVEN[2:]]}, 'home: is not between q_min and q_max at panda_joint2'),
+    ({'home': SEVEN}, 'home_deg: is given beside home'),
+    ({'qd_max': [*SEVEN[1:], float('nan')]}, 'qd_max: a number is not finite'),
+    ({'qdd_max': [*SEVEN[1:], 'fast']}, 'qdd_max: expected a list of numbers'),
+    ({'torque_max': [*SEVEN[1:], 0.0]}, 'torque_max: is not above 0 at panda_joint7'),
+    ({'torque_rate_max': -1.0}, 'torque_rate_max: expected a finite number above 0'),
+    ({'gains': {'soft': {'kp': SEVEN, 'kd': SEVEN}}}, "gains: expected gains by name, 'task' among them"),
+    ({'gains': {'task': {'kp': SEVEN}}}, 'gains.task: expected kp and kd'),
+    ({'gains': {'task': {'kp': SEVEN, 'kd': [*SEVEN[1:], -1.0]}}}, 'gains.task.kd: a gain is not above 0'),
+    ({'colour': 'white'}, 'colour: there is no such key; there are base_frame'),
+])
+def test_what_is_wrong_is_named_with_file_and_key(tmp_path, change, message):
+    path = tmp_path / 'broken.yaml'
+    path.write_text(yaml.safe_dump(yaml.safe_load(PANDA.read_text()) | change))
+    with pytest.raises(RobotFileError, match=rf'broken\.yaml: {message}'):
+        load_robot(str(path))
+
+
+def test_a_missing_key_or_file_is_named(tmp_path):
+    path = tmp_path / 'broken.yaml'
+    content = yaml.safe_load(PANDA.read_text())
+    del content['home_deg']
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(RobotFileError, match=r'broken\.yaml: home: is missing'):
+        load_robot(str(path))
+    with pytest.raises(RobotFileError, match=r'cannot read the robot file .*nothing\.yaml'):
+        load_robot(str(tmp_path / 'nothing.yaml'))
