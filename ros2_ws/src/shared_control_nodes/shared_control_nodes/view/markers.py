@@ -44,7 +44,7 @@ def ball_marker(position: np.ndarray, radius: float) -> Marker:
 
 
 def moment_markers(source: str, moment: float, tray: np.ndarray) -> list[Marker]:
-    """A bar above the tray (``tray``: its centre, (3,), m), to the side that ``moment`` (N m) pushes down, and its figure.
+    """A bar above the tray (centre ``tray``, (3,), m), to the side that ``moment`` (N m) pushes down, and its figure.
 
     A positive M_y tilts the side towards base +x down, so the bar points to where the ball will roll.
     """
