@@ -1,6 +1,6 @@
 """Tasks, worlds, learners, devices and robots by name, from this and from other people's packages.
 
-A package adds one by an entry point of the group, under its name, and touches no file of ours (docs/how-to).
+A package adds one by an entry point of the group, under its name, and touches no file of ours (docs/how_to).
 """
 
 from importlib.metadata import entry_points

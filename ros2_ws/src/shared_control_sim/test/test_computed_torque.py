@@ -84,7 +84,7 @@ def test_all_gains_are_stable_on_the_simulated_arm(model, world, gains):
 
 
 def test_a_keystroke_tilts_the_tray_as_measured(model, world):
-    """5 N m: 2.3 degrees quickly, creeping to 3.3 in 3 s (design, section 2)."""
+    """5 N m: 2.3 degrees quickly, creeping to 3.3 in 3 s."""
     controller = ComputedTorqueController(model)
     world.reset(HOME)
     tilt = {}

@@ -1,4 +1,4 @@
-"""The pinocchio model: against the design's numbers, finite differences and PyBullet."""
+"""The pinocchio model: against numbers of the reference posture, finite differences and PyBullet."""
 
 import numpy as np
 import pybullet
