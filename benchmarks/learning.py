@@ -1,4 +1,4 @@
-"""How many episodes it takes to teach the robot: the table of docs/learning.md.
+"""How many episodes it takes to teach the robot: the table of docs/explanation/learning.md.
 
 In process on the PyBullet plant. After every episode the policy is tested alone (20 episodes of 10 s, new starts each
 time); it is skilled at the second test in a row that it passes. Runs with the same seed share ball starts and first

@@ -37,7 +37,7 @@ def test_the_errors_of_troubleshooting_are_those_of_the_code():
     nodes = (node for path in [*SOURCES.glob('*/*/**/*.py'), ROOT / 'tools' / 'check_machine.py']
              for node in ast.walk(ast.parse(path.read_text())))
     strings = ' '.join(node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str))
-    quoted = re.findall(r'^> (.+)$', (ROOT / 'docs' / 'troubleshooting.md').read_text(), re.MULTILINE)
+    quoted = re.findall(r'^> (.+)$', (ROOT / 'docs' / 'how_to' / 'troubleshooting.md').read_text(), re.MULTILINE)
     assert len(quoted) == 4
     for message in quoted:
         longest = max(re.split(r'error: |/effort_controller/commands|[\d.]+ s', message), key=len).strip()

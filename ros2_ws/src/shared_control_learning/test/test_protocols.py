@@ -48,7 +48,7 @@ def test_perturbation_pushes_twice_and_a_good_policy_recovers(good_robot):
 
 
 def test_a_push_up_and_forwards_is_more_than_the_agent_can_hold(good_robot):
-    """Why docs/protocols.md pushes forwards and down: 8 N m against a push of equal signs lose the ball."""
+    """Why docs/reference/protocols.md pushes forwards and down: 8 N m against a push of equal signs lose the ball."""
     step = 0
 
     def full_counter_moment(observation):

@@ -2,7 +2,7 @@
 
 ``rclpy.spin`` builds a wait set, a task and a callback for every message, which costs a round trip of 0.75-1 ms
 between two processes. Waiting on one persistent wait set and taking the message directly costs 0.33-0.40 ms
-(two cores, JointState both ways), and only that leaves room for a controller in a millisecond.
+(``benchmarks/pingpong.py`` measures it), and only that leaves room for a controller in a millisecond.
 
 A node that receives fast subscribes with :class:`Polled` subscriptions, which its executor leaves alone, waits on
 the urgent one with :meth:`Polled.wait`, and lets :class:`Background` serve the rest (services, parameters) now and

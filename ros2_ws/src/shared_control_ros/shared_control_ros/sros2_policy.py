@@ -3,7 +3,7 @@
     python -m shared_control_ros.sros2_policy > policy.xml
     ros2 security generate_artifacts --keystore-root-path keystore --policy-files policy.xml
 
-The second line needs a ROS install with sros2; docs/security.md goes on from there.
+The second line needs a ROS install with sros2; docs/how_to/security.md goes on from there.
 """
 
 import xml.etree.ElementTree as ET

@@ -114,7 +114,7 @@ class TorqueCtrlNode:
         self._safety.hear()
 
     def _is_leftover(self, stamp_ns: int) -> bool:
-        """Whether this tick was answered and is only its first repetition (docs/architecture.md, "The tick")."""
+        """Whether this tick was answered and is only its first repetition (architecture.md, "The tick")."""
         self._repetitions = self._repetitions + 1 if stamp_ns == self._answered_ns else 0
         return self._repetitions == 1
 

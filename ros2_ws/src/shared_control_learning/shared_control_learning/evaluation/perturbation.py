@@ -20,7 +20,7 @@ PUSHES = ((5.0, 6.0), (10.0, 11.0))
 """From and to, s."""
 FORCE = (50.0, 0.0, -50.0)
 """50 N along the horizontal axis of the task (base x) and the vertical one, at the tray's origin, N. The thesis does
-not tell the signs; why these, see docs/protocols.md."""
+not tell the signs; why these, see docs/reference/protocols.md."""
 
 
 class PushedPlant(LocalPlant):

@@ -2,7 +2,7 @@
 
 It refuses to move until a person calls robot/enable (SetBool), and ends the control when torques are silent, when the
 arm reports an error and when it leaves. robot/error_recovery (Trigger) leaves a reflex. A skeleton: see
-docs/real_panda.md.
+docs/how_to/real_panda.md.
 """
 
 import time

@@ -1,4 +1,4 @@
-"""``shared-control study``: participants x conditions from one YAML file; docs/study.md."""
+"""``shared-control study``: participants x conditions from one YAML file; docs/how_to/study.md."""
 
 import argparse
 import os

@@ -1,4 +1,4 @@
-"""What the YAML file of a plan may say; docs/study.md."""
+"""What the YAML file of a plan may say; docs/how_to/study.md."""
 
 import re
 from typing import Annotated, Any, Literal, get_args

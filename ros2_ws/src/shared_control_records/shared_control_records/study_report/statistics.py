@@ -1,6 +1,6 @@
 """Statistics of a study: few runs, skewed, some censored (Agarwal et al., 2021, "Deep RL at the edge of the statistical
-precipice"). Their package rliable gives the same numbers (docs/study.md), but drags in packages that do not go with
-today's pandas; what is needed of it stands here.
+precipice"). Their package rliable gives the same numbers (docs/how_to/study.md), but drags in packages that
+do not go with today's pandas; what is needed of it stands here.
 
 Participants are resampled within their group (stratum): a study of two experts and eleven novices stays one.
 """
