@@ -42,8 +42,9 @@ def installed(tmp_path_factory):
 
 @pytest.mark.parametrize('example', EXAMPLES, ids=lambda path: path.name)
 def test_an_example_is_small_and_names_what_it_adds(example):
-    files = [path for path in example.iterdir() if not path.name.endswith(('.egg-info', 'build', '__pycache__'))]
-    assert {path.name for path in files} == {f'{example.name}.py', 'pyproject.toml', 'README.md'}
+    files = [path for path in example.rglob('*') if path.suffix in ('.py', '.toml', '.yaml', '.urdf', '.md')
+             and 'build' not in path.parts]
+    assert {'pyproject.toml', 'README.md'} <= {path.name for path in files}
     assert sum(len(path.read_text().splitlines()) for path in files) <= LINES_MAX
     project = tomllib.loads((example / 'pyproject.toml').read_text())['project']
     assert len(project['entry-points']) == 1

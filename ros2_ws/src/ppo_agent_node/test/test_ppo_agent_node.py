@@ -25,7 +25,7 @@ def graph(start_node):
 
 @pytest.fixture
 def phases(observer):
-    """What the agent tells, as strings."""
+    """The phases that the agent has published, as strings."""
     messages = observer.listen(contract.PHASE)
     return lambda: [m.data for m in messages]
 
@@ -74,7 +74,7 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=False))
     assert observer.call(Trigger, contract.FINISH_SERVICE, Trigger.Request()).success
     assert exit_code(observer, agent) == 0, agent.log()
-    assert phases() == ['wait', 'teach', 'wait', 'teach', 'learn', 'done']
+    assert phases() == ['wait', 'teach', 'wait', 'teach', 'learn', 'done'], agent.log()
     assert agent.log().count('the episode is void') == 1
     assert any(r.status[0].name == '/ppo_agent_node' for r in reports)
     assert read_description(output / 'policy.safetensors')['episode'] == 1
