@@ -65,7 +65,7 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     observer.spin(lambda: left and left[-1].data < 4.5, 40.0, 'an episode is under way')
     graph.process.kill()
     graph.process.wait()
-    start_node('panda_sim_node', paced=False)
+    start_node('panda_sim_node')
     agent.wait_for_log('the episode is void', 40.0)
     left.clear()
     observer.spin(lambda: left and left[-1].data < 4.5, 40.0, 'the next one is under way')
