@@ -143,7 +143,7 @@ def test_control_c_ends_all_processes(plan, tmp_path):
 
 
 def test_a_local_ray_cluster_does_the_same_list(plan, tmp_path):
-    pytest.importorskip('ray', reason="an extra: pip install 'shared_control[ray]'")
+    pytest.importorskip('ray', reason='optional: pip install ray')
     folder = StudyFolder(tmp_path / 'study')
     folder.begin(plan)
     names = [job.name for job in load_plan(plan).jobs]

@@ -65,7 +65,7 @@ def on_ray(folder: Path, names: Sequence[str], address: str) -> Generator[list[O
     try:
         import ray
     except ImportError as error:
-        raise ValueError("Ray is not installed: pip install 'shared_control[ray]'") from error
+        raise ValueError('Ray is not installed: pip install ray') from error
     try:
         ray.init(address=address, log_to_driver=False, logging_level='ERROR')
     except (ConnectionError, RuntimeError, ValueError) as error:
