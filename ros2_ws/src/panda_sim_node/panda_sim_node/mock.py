@@ -12,7 +12,6 @@ import time
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from shared_control.plugins import TASKS, load, names
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.tasks.task import BallStarts
 from shared_control_ros import contract
@@ -23,6 +22,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
+from shared_control_ros.task_parameter import declare_task
 from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
 from std_srvs.srv import SetBool, Trigger
@@ -51,9 +51,7 @@ class MockPandaNode:
         seed = declare(
             node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
-        task = load(TASKS, declare(
-            node, 'task', 'balance', 'The task: the tray on the flange, and where a ball is dropped.',
-            choices=names(TASKS)))()
+        task = declare_task(node, 'The task: the tray on the flange, and where a ball is dropped.')
         self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
         pace = declare(

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 from rclpy.node import Node
-from shared_control.plugins import TASKS, WORLDS, load, names
+from shared_control.plugins import WORLDS, load, names
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.scene import Ball
 from shared_control.tasks.task import BallStarts
@@ -25,6 +25,7 @@ from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
+from shared_control_ros.task_parameter import declare_task
 from std_srvs.srv import SetBool, Trigger
 
 from .tick_times import TickTimes
@@ -51,9 +52,7 @@ class PandaSimNode:
         seed = declare(
             node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
-        task = load(TASKS, declare(
-            node, 'task', 'balance', 'The task: the tray on the flange, and where a ball is dropped.',
-            choices=names(TASKS)))()
+        task = declare_task(node, 'The task: the tray on the flange, and where a ball is dropped.')
         self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
         physics = declare(node, 'physics', 'bullet', 'The physics.', choices=names(WORLDS))

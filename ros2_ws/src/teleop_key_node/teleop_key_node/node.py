@@ -8,8 +8,7 @@ import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
 from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE
-from shared_control.plugins import DEVICES, TASKS, load, names
-from shared_control.tasks.task import Task
+from shared_control.plugins import DEVICES, load, names
 from shared_control.teaching.device import Device
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
@@ -17,6 +16,7 @@ from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import set_ns
+from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.wrenches import base_wrench, set_moment
 
@@ -36,7 +36,7 @@ class TeleopKeyNode:
 
     def __init__(self) -> None:
         self.node = node = Node('teleop_key_node')
-        task = declare(node, 'task', 'balance', 'What is taught: axes and keys.', choices=names(TASKS))
+        self._task = declare_task(node, 'What is taught: axes and keys.')
         self._device = declare(
             node, 'device', KEYS_DEVICE, 'What the person holds in the hand.', choices=names(DEVICES))
         keystroke = declare(
@@ -60,7 +60,6 @@ class TeleopKeyNode:
 
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
-        self._task: Task = load(TASKS, task)()
         device: Device = load(DEVICES, self._device)(self._task, keystroke, self._moment_limit)
         self._sources = Sources(device, self._timeout)
         self._none = np.zeros(len(self._task.axes))

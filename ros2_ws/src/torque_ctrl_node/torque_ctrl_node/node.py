@@ -13,7 +13,6 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
-from shared_control.plugins import TASKS, load, names
 from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
 from shared_control.robot.model import RobotModel
 from shared_control_ros import contract
@@ -23,6 +22,7 @@ from shared_control_ros.parameters import declare
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
+from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.wire import WireLayout
 from std_msgs.msg import Float64MultiArray
 
@@ -42,8 +42,7 @@ class TorqueCtrlNode:
         self.node = node = Node('torque_ctrl_node')
         robot = declare_robot(node)
         gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(robot.gains))
-        task = load(TASKS, declare(
-            node, 'task', 'balance', 'The task: along which axes moments count.', choices=names(TASKS)))()
+        task = declare_task(node, 'The task: along which axes moments count.')
         self._timeout = declare(
             node, 'command_timeout', 0.1, 'A wrench older than this counts as zero.', unit='s',
             minimum=0.02, maximum=1.0)

@@ -1,0 +1,21 @@
+"""The parameter that says which task a node has to do with."""
+
+from rclpy.node import Node
+from shared_control.plugins import TASKS, load, names
+from shared_control.tasks.task import Task
+
+from .parameters import declare
+
+
+def declare_task(node: Node, description: str) -> Task:
+    """Declare the parameter ``task`` and make the task it names, with its default settings.
+
+    Args:
+        node: whose parameter it is.
+        description: of the parameter: what in the task matters to this node.
+
+    Raises:
+        ParameterError: there is no such task.
+    """
+    task: Task = load(TASKS, declare(node, 'task', 'balance', description, choices=names(TASKS)))()
+    return task
