@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController
-from shared_control.robot.model import GRAVITY, RobotModel, pitch
+from shared_control.robot.model import GRAVITY, pitch
 from shared_control.tasks.balance import BALANCE
 from shared_control_sim.bullet import BulletWorld
 
@@ -13,11 +13,6 @@ def world():
     world = BulletWorld()
     yield world
     world.close()
-
-
-@pytest.fixture(scope='module')
-def model():
-    return RobotModel()
 
 
 def start(x):

@@ -3,27 +3,14 @@
 import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController, limit_torque
-from shared_control.robot.model import RobotModel, pitch
+from shared_control.robot.model import pitch
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
-from shared_control_sim.bullet import BulletWorld
 
 DT = 0.001
 FAR = np.full(panda().dof, 1e9)
 FIVE = np.array([5.0])
 HOME = np.array(BALANCE.scene.home)
-
-
-@pytest.fixture(scope='module')
-def model():
-    return RobotModel()
-
-
-@pytest.fixture(scope='module')
-def world():
-    world = BulletWorld()
-    yield world
-    world.close()
 
 
 def unlimited(controller, q, qd, m_y, **reference):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController
-from shared_control.robot.model import RobotModel
 from shared_control.robot.reflex import command_violation, state_violation
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
@@ -12,11 +11,6 @@ from shared_control_sim.effort_arm import EffortPanda, Mode
 
 STILL = np.zeros(7)
 JUMP = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.5, 0.0])
-
-
-@pytest.fixture(scope='module')
-def model():
-    return RobotModel()
 
 
 @pytest.fixture

@@ -7,19 +7,6 @@ import pybullet
 import pytest
 from shared_control.robot.model import RobotModel, manipulability, pitch
 from shared_control.robot.spec_file import panda
-from shared_control_sim.bullet import BulletWorld
-
-
-@pytest.fixture(scope='module')
-def model():
-    return RobotModel()
-
-
-@pytest.fixture(scope='module')
-def world():
-    world = BulletWorld()
-    yield world
-    world.close()
 
 
 def random_states(count):
