@@ -1,6 +1,5 @@
 """The files for Docker, as far as they can be checked without an engine: nothing here builds or runs an image."""
 
-import ast
 import json
 import re
 import shlex
@@ -17,7 +16,7 @@ from shared_control_bringup.graph import Role, nodes_of, overrides
 from shared_control_bringup.node_process import REAL_TIME_PRIORITY
 from shared_control_bringup.parameters import load
 from shared_control_bringup.settings import Settings
-from shared_control_ros.processes import node_module
+from shared_control_testing.parameters import declared_parameters
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / 'ros2_ws' / 'src'
@@ -114,22 +113,10 @@ def test_the_services_are_a_session_with_a_simulated_tutor():
         words = taking_part[node.name]
         assert (words[:3] == ['chrt', '--rr', str(REAL_TIME_PRIORITY)]) is (node.role is Role.CONTROL_LOOP)
         given = dict(word.split(':=', 1) for flag, word in pairwise(words) if flag == '-p')
-        found = {**declared_defaults(node.name), **load()[node.name],
+        found = {**declared_parameters(node.name), **load()[node.name],
                  **{name: yaml.safe_load(value) if name != 'screen' else value for name, value in given.items()}}
         for name, value in expected[node.name].items():
             assert found[name] == value, f'{node.name}: {name}'
-
-
-def declared_defaults(node):
-    """Default values of a node's parameters, as far as they are literals."""
-    found = {}
-    package, *rest = node_module(node).split('.')
-    for path in (SOURCES / package / package).joinpath(*rest).parent.glob('*.py'):
-        for call in ast.walk(ast.parse(path.read_text())):
-            if isinstance(call, ast.Call) and ast.unparse(call.func) == 'declare' and isinstance(
-                    call.args[2], ast.Constant):
-                found[call.args[1].value] = call.args[2].value
-    return found
 
 
 @pytest.mark.parametrize('name', COMPOSE['services'])

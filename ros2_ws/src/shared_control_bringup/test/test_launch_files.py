@@ -15,6 +15,7 @@ from shared_control_bringup.graph import ALL_NODES, overrides
 from shared_control_bringup.parameters import DEFAULTS, load
 from shared_control_bringup.settings import TUTORS, Settings
 from shared_control_ros.processes import node_module
+from shared_control_testing.parameters import declared_parameters
 
 PACKAGE = Path(__file__).parents[1]
 PACKAGES = PACKAGE.parent
@@ -50,14 +51,6 @@ def used(tree):
         if calls(tree, name):
             found |= used(helper)
     return found
-
-
-def parameters_of(node):
-    """Parameters that a node declares."""
-    package, *rest = node_module(node).split('.')
-    folder = (PACKAGES / package / package).joinpath(*rest).parent
-    trees = [ast.parse(path.read_text()) for path in folder.glob('*.py')]
-    return {'use_sim_time'} | {call.args[1].value for tree in trees for call in calls(tree, 'declare')}
 
 
 def console_scripts(package):
@@ -146,7 +139,7 @@ def test_nodes_and_their_parameters_exist(started):
             package, name = node.kwargs['package'], node.kwargs['executable']
             if (PACKAGES / package).is_dir():
                 assert name in console_scripts(package)
-                assert set(given_to(node)) <= parameters_of(name), name
+                assert set(given_to(node)) <= {'use_sim_time', *declared_parameters(name)}, name
 
 
 @pytest.mark.parametrize('tutor', TUTORS)
