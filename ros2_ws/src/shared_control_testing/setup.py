@@ -15,6 +15,7 @@ setup(
         'shared_control', 'shared_control_learning', 'shared_control_records', 'shared_control_ros', 'rclpy',
         'numpy', 'rosbags', 'pytest',
     ],
+    entry_points={'pytest11': ['shared_control = shared_control_testing.plugin']},
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='shared-control maintainers',
