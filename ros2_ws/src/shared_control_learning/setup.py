@@ -22,7 +22,10 @@ setup(
     description='Learning from people and rewards: PPO, corrections, policy files, training, tests of a policy.',
     license='Apache-2.0',
     entry_points={
-        'shared_control.commands': ['train = shared_control_learning.train_command:add_command'],
+        'shared_control.commands': [
+            'train = shared_control_learning.train_command:add_command',
+            'tutors = shared_control_learning.tutors_command:add_command',
+        ],
         'shared_control.learners': [
             'coached = shared_control_learning.presets:COACHED',
             'thesis = shared_control_learning.presets:THESIS_PPO',

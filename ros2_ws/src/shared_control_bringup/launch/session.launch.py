@@ -13,7 +13,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from shared_control.plugins import LEARNERS, names
-from shared_control.teaching.profiles import PROFILES
+from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_bringup.graph import Role, named, nodes_of, overrides
 from shared_control_bringup.launching import (
     common_arguments,
@@ -49,7 +49,7 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription([
         DeclareLaunchArgument('tutor', default_value='keyboard', choices=list(TUTORS),
                               description='Who teaches: you, here or in a browser, a simulated tutor, or nobody.'),
-        DeclareLaunchArgument('profile', default_value='expert', choices=list(PROFILES),
+        DeclareLaunchArgument('profile', default_value='expert', choices=list(TUTOR_NAMES),
                               description='Of the simulated tutor.'),
         DeclareLaunchArgument('preset', default_value='coached', choices=names(LEARNERS),
                               description='What is learned and how.'),

@@ -76,7 +76,9 @@ NODES = (
     SessionNode('teleop_key_node', lambda s: {
         'task': _of_the_task(s.settings.preset)['task'],
         'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
-    SessionNode('sim_tutor_node', lambda s: {'profile': s.settings.profile, 'seed': s.settings.seed}, tutor='sim'),
+    SessionNode('sim_tutor_node', lambda s: {
+        'task': _of_the_task(s.settings.preset)['task'], 'profile': s.settings.profile,
+        'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
                 tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {

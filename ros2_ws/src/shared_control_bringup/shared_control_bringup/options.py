@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.plugins import LEARNERS, names
-from shared_control.teaching.profiles import PROFILES
+from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_ros.host_and_port import host_and_port
 
 from .parameters import DEFAULTS
@@ -27,7 +27,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         f'{default.tutor})', choices=TUTORS)
     add('--page', 'where the page of --tutor page is served; another host than loopback opens it to the network, with '
         f'a token (default: {default.page[0]}:{default.page[1]})', type=host_and_port, metavar='HOST:PORT')
-    add('--profile', f'of the simulated tutor (default: {default.profile})', choices=tuple(PROFILES))
+    add('--profile', f'who the simulated tutor is: a profile, or a family, of which the seed draws one (default: '
+        f'{default.profile})', choices=TUTOR_NAMES)
     add('--preset', f'what is learned and how (default: {default.preset})', choices=names(LEARNERS))
     add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '
         f'{default.episodes})', type=int)

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from shared_control.plugins import LEARNERS, names
-from shared_control.teaching.profiles import PROFILES
+from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
 SIMULATED = 'simulated: '
@@ -27,7 +27,7 @@ class Settings:
     tutor: str = 'keyboard'
     """Who teaches: one of ``TUTORS``."""
     profile: str = 'expert'
-    """Profile of the simulated tutor."""
+    """Who the simulated tutor is: a profile, or a family, of which the seed draws one."""
     episodes: int = 0
     """Teach this many; 0: until somebody says that it has learned it."""
     minutes: float = 45.0
@@ -45,7 +45,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         for option, value, choices in (('--preset', self.preset, names(LEARNERS)), ('--tutor', self.tutor, TUTORS),
-                                       ('--profile', self.profile, PROFILES)):
+                                       ('--profile', self.profile, TUTOR_NAMES)):
             if value not in choices:
                 raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
         for option, number, low, high in (

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, load, names
 from shared_control.run_folder import RunFolder
-from shared_control.teaching.profiles import PROFILES, profile
-from shared_control.teaching.tutor import can_teach
+from shared_control.teaching.picture import can_teach
+from shared_control.teaching.tutors import TUTOR_NAMES, tutor_named
 from tqdm import tqdm
 
 from .callbacks import Callbacks
@@ -30,7 +30,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--preset', choices=names(LEARNERS), default='coached', help='what is learned, and how')
     parser.add_argument('--task', choices=names(TASKS), help='default: the one that the preset was made for')
     parser.add_argument('--world', choices=names(WORLDS), default='bullet', help='the physics (default: bullet)')
-    parser.add_argument('--tutor', choices=(*PROFILES, 'none'), help='simulated tutor (default: expert; none for a '
+    parser.add_argument('--tutor', choices=(*TUTOR_NAMES, 'none'), help='simulated tutor (default: expert; none for a '
                         'preset that nobody teaches, and for a task that tutors do not know)')
     parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
     parser.add_argument('--seed', type=int, default=0, help='of everything random (default: 0)')
@@ -67,7 +67,7 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
     try:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
             result = train(
-                chosen, None if tutor == 'none' else profile(tutor), args.seed, args.episodes,
+                chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.episodes,
                 until_skilled=args.until_skilled, human_only=args.human_only, world=args.world, folder=args.output,
                 tensorboard=True, evaluate_every=args.evaluate_every, callbacks=_Bar(bar, args.output))
     except KeyboardInterrupt:

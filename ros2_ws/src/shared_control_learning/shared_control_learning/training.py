@@ -10,8 +10,8 @@ from pydantic import ConfigDict, TypeAdapter, with_config
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
-from shared_control.teaching.profiles import TutorProfile
-from shared_control.teaching.tutor import SimulatedTutor, can_teach
+from shared_control.teaching.picture import can_teach
+from shared_control.teaching.tutors import Who, make_tutor
 from shared_control_sim.local_plant import LocalPlant
 from stable_baselines3.common.logger import Logger, configure
 
@@ -43,7 +43,7 @@ class TrainingRun:
 
     preset: str
     tutor: dict[str, Any] | None
-    """The tutor's profile; None when there was nobody."""
+    """The tutor's profile, or the individual; None when there was nobody."""
     seed: int
     human_only: bool = False
     """The agent's moment was not applied (4.7)."""
@@ -76,7 +76,7 @@ class TrainingRun:
 _TRAINING_RUN = TypeAdapter(TrainingRun)
 
 
-def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, *, until_skilled: bool = True,
+def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_skilled: bool = True,
           human_only: bool = False, world: str = 'bullet', folder: Path | None = None, tensorboard: bool = False,
           evaluate_every: int = 1, callbacks: Callbacks | None = None) -> TrainingRun:
     """Teach a policy in this process, by a simulated tutor or by nobody.
@@ -101,13 +101,13 @@ def train(preset: Preset, tutor: TutorProfile | None, seed: int, episodes: int, 
         PolicyFileError: ``folder`` holds an unusable policy.
         ValueError: there is a tutor, and the task has other axes than tutors know.
     """
-    if tutor is not None and not can_teach(preset.task):
-        raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     run = TrainingRun(preset.name, None if tutor is None else asdict(tutor), seed, human_only)
     learner = preset.make(seed)
+    if tutor is not None and not can_teach(preset.task):
+        raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     if folder is not None:
         learner, run = _resumed(learner, run, folder)
-    person = None if tutor is None else SimulatedTutor(tutor, seed, learner.episode)
+    person = None if tutor is None else make_tutor(tutor, preset.task, seed, learner.episode)
     env = SharedControlEnv(LocalPlant(preset.task, person, world), preset.task, human_only)
     test_env = SharedControlEnv(LocalPlant(preset.task, world=world), as_tested(preset.task))
     try:

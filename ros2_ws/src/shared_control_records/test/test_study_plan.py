@@ -71,7 +71,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     ('seed: 3', 'seed: 2020-01-01', 'seed: Input should be a valid integer, found datetime.date(2020, 1, 1)'),
     ('expert: 1', 'expert: 0', 'participants.simulated.expert: Input should be greater than or equal to 1, found 0'),
     ('expert: 1', 'expert: 2000000000', 'participants.simulated.expert: Input should be less than or equal to 1000'),
-    ('expert: 1', 'wizard: 1', "participants.simulated.wizard: no tutor profile 'wizard'; there are expert"),
+    ('expert: 1', 'wizard: 1', "participants.simulated.wizard: no simulated tutor 'wizard'; there are expert"),
     ('coached: {', 'coach: {', "conditions.coach.preset: no learner 'coach'; there are autonomous"),
     ('episodes: 5', 'episodes: five', "conditions.coached.episodes: Input should be a valid integer, found 'five'"),
     ('episodes: 5', 'epochs: 5', "conditions.coached: no key 'epochs'; there are episodes, evaluate_every, preset"),

@@ -4,8 +4,7 @@ from typing import Any
 
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, load
-from shared_control.teaching.profiles import profile
-from shared_control.teaching.tutor import SimulatedTutor, can_teach
+from shared_control.teaching.tutors import make_tutor, tutor_named
 
 from .local_plant import LocalPlant
 
@@ -16,7 +15,7 @@ def make_env(task: str, tutor: str | None = None, world: str = 'bullet', human_o
 
     Args:
         task: name (entry point of the group ``shared_control.tasks``).
-        tutor: profile of a simulated tutor (``expert``, ``low``, ...); nobody at the keys when None.
+        tutor: name of a simulated tutor (``expert``, ``crossover``, ...); nobody at the keys when None.
         world: name of the physics (entry point of the group ``shared_control.worlds``).
         human_only: the agent's moment is not applied.
         settings: of the task, as its class has them (``episode_seconds``, ``action_scale``, ...).
@@ -28,7 +27,5 @@ def make_env(task: str, tutor: str | None = None, world: str = 'bullet', human_o
         ImportError: the world is not installed; the message says what to install.
     """
     chosen = load(TASKS, task)(**settings)
-    if tutor is not None and not can_teach(chosen):
-        raise ValueError(f'simulated tutors do not know the axes of the task {task}')
-    person = None if tutor is None else SimulatedTutor(profile(tutor))
+    person = None if tutor is None else make_tutor(tutor_named(tutor), chosen)
     return SharedControlEnv(LocalPlant(chosen, person, world), chosen, human_only)

@@ -36,7 +36,7 @@ def test_arguments_reach_the_task_and_the_tutor():
 
 
 @pytest.mark.parametrize(('arguments', 'said'), [
-    ({'tutor': 'nobody'}, "no tutor profile 'nobody'"), ({'world': 'flat'}, "no world 'flat'"),
+    ({'tutor': 'nobody'}, "no simulated tutor 'nobody'"), ({'world': 'flat'}, "no world 'flat'"),
     ({'action_scale': -1.0}, 'action_scale is -1.0'), ({'gravity': 1.0}, "argument 'gravity'")])
 def test_wrong_arguments_are_named(arguments, said):
     with pytest.raises((ValueError, TypeError), match=said):

@@ -7,13 +7,19 @@ import pytest
 from shared_control.env import SharedControlEnv
 from shared_control.keys import Key, KeyMoment
 from shared_control.rates import POLICY_PERIOD
+from shared_control.teaching.picture import Picture
 from shared_control.teaching.profiles import EXPERT, PROFILES, in_episode, profile
-from shared_control.teaching.tutor import TILT_OF_MOMENT, Picture, SimulatedTutor
+from shared_control.teaching.tutor import TILT_OF_MOMENT, SimulatedTutor
 from shared_control_sim.local_plant import LocalPlant
 
 SHARP_EYED = replace(EXPERT, position_noise=0.0, velocity_noise=0.0, pitch_noise=0.0)
-OFF_CENTRE = Picture(position_error=0.15, velocity=0.0, pitch=0.0)
-CENTRED = Picture(position_error=0.0, velocity=0.0, pitch=0.0)
+
+
+def seen(error=0.0, velocity=0.0):
+    return Picture(*(np.array([value]) for value in (error, velocity, 0.0)))
+
+
+OFF_CENTRE, CENTRED = seen(0.15), seen()
 
 
 def presses(tutor, picture_at, seconds=5.0):
@@ -22,8 +28,8 @@ def presses(tutor, picture_at, seconds=5.0):
     for step in range(round(seconds / POLICY_PERIOD)):
         now = step * POLICY_PERIOD
         picture = picture_at(now)
-        picture = replace(picture, pitch=picture.pitch + TILT_OF_MOMENT * float(keys.moment[0]))
-        key = tutor.key(now, picture, float(keys.moment[0]))
+        picture = replace(picture, tilt=picture.tilt + TILT_OF_MOMENT * keys.moment)
+        key = tutor.key(now, picture, keys.moment)
         if key is not None:
             keys.press(key)
             pressed.append((now, key))
@@ -38,14 +44,14 @@ def test_unknown_profile_is_refused_with_the_names_of_all():
 @pytest.mark.parametrize('name', PROFILES)
 def test_nobody_presses_faster_than_the_profile_says(name):
     tutor = SimulatedTutor(profile(name), seed=1)
-    times = [t for t, _ in presses(tutor, lambda t: Picture(0.15 * np.sin(4 * t), 0.5 * np.cos(4 * t), 0.0), 20.0)]
+    times = [t for t, _ in presses(tutor, lambda t: seen(0.15 * np.sin(4 * t), 0.5 * np.cos(4 * t)), 20.0)]
     assert len(times) > 5
     assert np.diff(times).min() >= 1.0 / profile(name).key_rate - 1e-6
 
 
 def test_reacts_after_the_reaction_time_and_to_the_right_side():
     tutor = SimulatedTutor(SHARP_EYED, seed=1)
-    for picture, key in ((OFF_CENTRE, Key.LEFT), (Picture(-0.15, 0.0, 0.0), Key.RIGHT)):
+    for picture, key in ((OFF_CENTRE, Key.LEFT), (seen(-0.15), Key.RIGHT)):
         tutor.reset(1)
         time, pressed = presses(tutor, lambda t, p=picture: p if t >= 1.0 else CENTRED)[0]
         assert pressed is key
@@ -63,7 +69,7 @@ def test_lets_go_of_a_ball_at_rest_in_the_centre():
 
 
 def test_a_ball_that_rests_beside_the_centre_wears_out_patience():
-    beside = Picture(0.025, 0.0, 0.0)
+    beside = seen(0.025)
     pressed, never = (
         presses(SimulatedTutor(replace(SHARP_EYED, patience=patience, generosity=0.0), seed=1), lambda t: beside, 8.0)
         for patience in (EXPERT.patience, 0.0))
@@ -85,7 +91,7 @@ def test_sham_does_not_look():
 
 def test_a_seed_makes_the_same_tutor():
     def run(seed):
-        return presses(SimulatedTutor(profile('low'), seed), lambda t: Picture(0.1 * np.sin(2 * t), 0.0, 0.0), 20.0)
+        return presses(SimulatedTutor(profile('low'), seed), lambda t: seen(0.1 * np.sin(2 * t)), 20.0)
 
     assert run(5) == run(5)
     assert run(5) != run(6)

@@ -72,6 +72,13 @@ class Task(ABC):
     def ball_start(self, random: np.random.Generator) -> np.ndarray:
         """Where the ball is dropped at the start of an episode, base frame, (3,), m."""
 
+    def aim(self, ball: np.ndarray) -> np.ndarray:
+        """Where a simulated tutor would send a ball that is at ``ball``: the goal, or a way-point on the way there.
+
+        Both (2,), m, in the frame of the tray: its middle unless a task overrides this.
+        """
+        return np.zeros(2)
+
     @abstractmethod
     def describe(self, state: PlantState, model: RobotModel) -> Any:
         """What the task looks at, a :class:`TaskState`."""

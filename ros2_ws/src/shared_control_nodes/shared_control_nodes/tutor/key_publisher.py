@@ -4,7 +4,7 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import BUTTONS, Key
+from shared_control.keys import BUTTONS, Key, KeyMap
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 
@@ -16,11 +16,17 @@ REPEAT_SECONDS = 0.05
 
 
 class KeyPublisher:
-    """Presses and releases keys on ``/human/keys`` and repeats their state."""
+    """Presses and releases keys on ``/human/keys`` and repeats their state.
 
-    def __init__(self, node: Node):
+    Args:
+        node: whose publisher it is.
+        keys: those of the task.
+    """
+
+    def __init__(self, node: Node, keys: KeyMap):
         self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * BUTTONS)
+        self._up = [0] * max(BUTTONS, *(key + 1 for key in keys))
+        self._joy = Joy(buttons=self._up)
         self._joy.header.frame_id = SOURCE
         self._published_at = 0.0
         self.presses = 0
@@ -28,7 +34,7 @@ class KeyPublisher:
     def press(self, key: Key, stamp_ns: int) -> None:
         """A key goes down."""
         self.presses += 1
-        self._joy.buttons = [int(button == key) for button in range(BUTTONS)]
+        self._joy.buttons = [int(button == key) for button in range(len(self._up))]
         self._publish(stamp_ns)
 
     def update(self, stamp_ns: int) -> None:
@@ -42,7 +48,7 @@ class KeyPublisher:
 
     def release(self, stamp_ns: int) -> None:
         """All keys are up."""
-        self._joy.buttons = [0] * BUTTONS
+        self._joy.buttons = self._up
         self._publish(stamp_ns)
 
     def _publish(self, stamp_ns: int) -> None:

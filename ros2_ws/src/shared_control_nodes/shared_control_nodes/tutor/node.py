@@ -13,8 +13,7 @@ from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.spec_file import panda
 from shared_control.seeds import episode_seed
-from shared_control.teaching.profiles import PROFILES, profile
-from shared_control.teaching.tutor import SimulatedTutor
+from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -22,6 +21,7 @@ from shared_control_ros.joints import joint_positions
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.wrenches import moment_of
 
@@ -35,21 +35,25 @@ class SimTutorNode:
 
     def __init__(self) -> None:
         self.node = node = Node('sim_tutor_node')
-        name = declare(node, 'profile', 'expert', 'Who it is.', choices=tuple(PROFILES))
+        name = declare(
+            node, 'profile', 'expert', 'Who it is: a profile, or a family, of which the seed draws one.',
+            choices=TUTOR_NAMES)
         self._seed = declare(
             node, 'seed', 0, 'Of errors of perception.', minimum=0, maximum=2**31 - 1)
-        self._tutor = SimulatedTutor(profile(name), self._seed)
+        task = declare_task(node, 'The task: its axes and keys, and where the ball should be.')
+        self._axes = task.axes
+        self._tutor = make_tutor(tutor_named(name, self._seed), task, self._seed)
         self._balls = Polled(node, contract.BALL, depth=10)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
         self._human = Polled(node, contract.HUMAN_WRENCH)
         self._lesson = Lesson(node)
-        self._keys = KeyPublisher(node)
+        self._keys = KeyPublisher(node, task.keys)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
         self._stamp_ns = 0
         self._started_ns = 0
         self._q: np.ndarray | None = None
-        self._m_y_human = 0.0
+        self._held = np.zeros(len(task.axes))
 
     def run(self, stop: Stop) -> None:
         """Watch, and press keys, until told to stop."""
@@ -76,18 +80,18 @@ class SimTutorNode:
                 self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:
             try:
-                self._m_y_human = float(moment_of(wrench)[0])
+                self._held = moment_of(wrench, self._axes)
             except ValueError as error:
                 self._complain(self._human, str(error))
         if self._lesson.phase != 'teach' or self._q is None:
             return
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
-        if not math.isfinite(position.x + velocity.x):
-            self._complain(self._balls, f'x is {position.x} m, its velocity {velocity.x} m/s')
+        if not math.isfinite(position.x + position.y + position.z + velocity.x + velocity.y):
+            self._complain(self._balls, f'position {position}, velocity {velocity}')
             return
         picture = self._tutor.look(PlantState(
-            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), *[np.zeros(1)] * 3))
-        key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._m_y_human)
+            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), *[self._held] * 3))
+        key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._held)
         if key is not None:
             self._keys.press(key, self._stamp_ns)
 

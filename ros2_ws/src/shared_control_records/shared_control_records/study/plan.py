@@ -1,12 +1,14 @@
 """The plan of a study, from a YAML file."""
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import yaml
 from shared_control.seeds import episode_seed
-from shared_control.teaching.profiles import TutorProfile, profile
+from shared_control.teaching.families import draw_individual, spread_around
+from shared_control.teaching.profiles import PROFILES, profile
+from shared_control.teaching.tutors import Who
 from shared_control_learning.wrong_content import what_is_wrong
 
 from .plan_file import SIZE_MAX, TESTS, Learning, People, Simulated, parse
@@ -32,10 +34,10 @@ class Participant:
     number: int
     """From 1."""
     group: str
-    """The profile that a simulated one was drawn around, or ``person``."""
+    """The profile or family that a simulated one was drawn of, or ``person``."""
     seed: int
     """Seed of everything random, the same in every condition: so conditions are paired."""
-    tutor: TutorProfile | None
+    tutor: Who | None
     """The simulated tutor; None for a real one."""
 
     @property
@@ -111,14 +113,11 @@ def load_plan(path: Path) -> Plan:
                 who if isinstance(who, People) else None)
 
 
-def draw_tutor(group: str, spread: float, seed: int) -> TutorProfile:
-    """A simulated tutor around the profile ``group``: each number times ``exp(spread z)``, z standard normal."""
-    base = profile(group)
-    random = np.random.default_rng((seed, 2))
-    numbers = [f.name for f in fields(base) if type(getattr(base, f.name)) is float]
-    factors = np.exp(spread * random.standard_normal(len(numbers)))
-    return replace(base, **{name: getattr(base, name) * float(factor)
-                            for name, factor in zip(numbers, factors, strict=True)})
+def draw_tutor(group: str, spread: float, seed: int) -> Who:
+    """A simulated tutor: ``spread`` around the profile ``group``, or an individual of the family of that name."""
+    if group not in PROFILES:
+        return draw_individual(group, seed)
+    return spread_around(profile(group), spread, np.random.default_rng((seed, 2)))
 
 
 def _participants(who: Simulated | People, seed: int) -> tuple[Participant, ...]:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, get_args
 
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, field_validator, model_validator
-from shared_control.teaching.profiles import profile
+from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.presets import preset
 from shared_control_learning.wrong_content import shortened
 
@@ -21,8 +21,8 @@ def _known_preset(name: str) -> str:
     return preset(name).name
 
 
-def _known_profile(name: str) -> str:
-    profile(name)
+def _known_tutor(name: str) -> str:
+    tutor_named(name)
     return name
 
 
@@ -94,10 +94,10 @@ class People(Section):
 class Simulated(Section):
     """Who is simulated."""
 
-    simulated: Annotated[dict[Annotated[Name, AfterValidator(_known_profile)], Count], Field(min_length=1)]
-    """How many around each profile."""
+    simulated: Annotated[dict[Annotated[Name, AfterValidator(_known_tutor)], Count], Field(min_length=1)]
+    """How many around each profile, or of each family."""
     spread: Annotated[float, Field(ge=0.0, le=2.0)] = 0.15
-    """How far individuals differ from their profile."""
+    """How far individuals differ from their profile; families have their own distributions."""
 
 
 class PlanFile(Section):

@@ -1,0 +1,50 @@
+"""Simulated tutors by name: the profiles, and the families of which an individual is drawn.
+
+Quick to load, for options and launch files: what looks at a robot is imported when a tutor is made.
+"""
+
+from typing import TYPE_CHECKING
+
+from .families import FAMILIES, draw_individual
+from .individual import Individual
+from .profiles import PROFILES, TutorProfile, profile
+
+if TYPE_CHECKING:
+    from ..tasks.task import Task
+    from .person import SimulatedPerson
+
+Who = TutorProfile | Individual
+"""A simulated person as a frozen dataclass of numbers."""
+
+TUTOR_NAMES = (*PROFILES, *FAMILIES)
+"""What a tutor may be called in options, plans and parameters."""
+
+
+def tutor_named(name: str, seed: int = 0) -> Who:
+    """The profile called ``name``, or the individual of that family that belongs to ``seed``.
+
+    Raises:
+        ValueError: there is neither; the message lists the names.
+    """
+    if name not in TUTOR_NAMES:
+        raise ValueError(f'no simulated tutor {name!r}; there are {", ".join(TUTOR_NAMES)}')
+    return profile(name) if name in PROFILES else draw_individual(name, seed)
+
+
+def make_tutor(who: Who, task: 'Task', seed: int = 0, episodes: int = 0) -> 'SimulatedPerson':
+    """Someone at the keys.
+
+    Args:
+        who: a profile or an individual.
+        task: its axes and keys.
+        seed: of what differs from look to look.
+        episodes: taught before.
+
+    Raises:
+        ValueError: the task has other axes than tutors know.
+    """
+    from .individual_tutor import IndividualTutor
+    from .tutor import SimulatedTutor
+    if isinstance(who, TutorProfile):
+        return SimulatedTutor(who, seed, episodes, task)
+    return IndividualTutor(who, seed, episodes, task)

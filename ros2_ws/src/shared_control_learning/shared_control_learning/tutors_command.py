@@ -1,0 +1,92 @@
+"""``shared-control tutors``: the population of simulated tutors, and how well each does the task alone."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from statistics import mean, median
+from typing import Any
+
+import numpy as np
+from shared_control.env import SharedControlEnv
+from shared_control.files import write_atomically
+from shared_control.plugins import TASKS, load, names
+from shared_control.rates import POLICY_PERIOD
+from shared_control.seeds import episode_seed
+from shared_control.tasks.task import Task, settled
+from shared_control.teaching.families import FAMILIES
+from shared_control.teaching.profiles import PROFILES
+from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
+from shared_control_sim.local_plant import LocalPlant
+from tqdm import tqdm
+
+from .callbacks import Callbacks
+from .episode import Episode
+from .learn import run_episode
+
+
+def add_command(commands: argparse._SubParsersAction) -> None:
+    """Add ``tutors`` to the command line."""
+    parser = commands.add_parser(
+        'tutors', help='simulated tutors: families, sources, and how well each does the task alone',
+        description='Every individual has one episode with a robot that gives no moment of its own. All tutors are '
+        'simulated. Families marked "tuning" may be used to choose settings; results are of those held out.')
+    parser.add_argument('tutors', nargs='*', metavar='NAME', default=list(TUTOR_NAMES),
+                        help=f'profiles and families (default: all): {", ".join(TUTOR_NAMES)}')
+    parser.add_argument('--individuals', type=int, default=12, help='of each (default: %(default)s)')
+    parser.add_argument('--task', choices=names(TASKS), default='balance')
+    parser.add_argument('--json', type=Path, metavar='FILE', help='write the figures there as well')
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure and print; the exit code."""
+    if args.individuals < 1:
+        raise ValueError(f'--individuals is {args.individuals}, expected at least 1')
+    for name in args.tutors:
+        tutor_named(name)
+    task = load(TASKS, args.task)()
+    rows = []
+    with tqdm(total=len(args.tutors) * args.individuals, unit='episode', disable=None, file=sys.stderr) as bar:
+        for name in args.tutors:
+            rows.append(alone(name, task, args.individuals, bar))
+    print(f'{"":14} {"use":9} {"succeed":>8} {"kept":>5} {"off, mm":>8} {"held":>5} {"presses":>8}  source')
+    for row in rows:
+        print(f'{row["tutor"]:14} {row["use"]:9} {row["success"]:>8.0%} {row["kept"]:>5.0%} '
+              f'{1e3 * row["position_error"]:>8.0f} {row["held"]:>5.0%} {row["presses_a_minute"]:>8.0f}  '
+              f'{row["source"]}')
+    print(f'{args.individuals} individuals each, alone with an idle robot, one episode of {task.episode_seconds:g} s; '
+          'off: median |position error| over the last 3 s; presses: changes of the moment in a minute. Simulated.')
+    if args.json:
+        args.json.parent.mkdir(parents=True, exist_ok=True)
+        write_atomically(args.json, (json.dumps({'task': task.name, 'tutors': rows}, indent=2) + '\n').encode())
+    return 0
+
+
+def alone(name: str, task: Task, individuals: int, bar: tqdm) -> dict[str, Any]:
+    """The row of a profile or a family."""
+    episodes = []
+    for seed in range(individuals):
+        person = make_tutor(tutor_named(name, seed), task, seed)
+        env = SharedControlEnv(LocalPlant(task, person), task)
+        episode = Episode(task)
+        try:
+            run_episode(lambda _: np.zeros(len(task.axes)), env, episode_seed(seed, 1), episode, Callbacks())
+        finally:
+            env.close()
+        episodes.append(episode)
+        bar.update()
+    family = FAMILIES.get(name)
+    return {
+        'tutor': name, 'simulated': True, 'use': family.use.value if family else 'profile',
+        'source': family.source if family else f'profile, {PROFILES[name].reaction_time:g} s late',
+        'individuals': individuals, 'success': mean(episode.success for episode in episodes),
+        'kept': mean(not episode.failed for episode in episodes),
+        'position_error': median(settled(np.array(episode.position_error)) for episode in episodes),
+        'held': mean(episode.intervention_rate for episode in episodes),
+        'presses_a_minute': mean(map(_presses_a_minute, episodes))}
+
+
+def _presses_a_minute(episode: Episode) -> float:
+    changed = (np.diff(np.array(episode.human), axis=0) != 0.0).any(axis=1).sum()
+    return float(changed) / (len(episode) * POLICY_PERIOD / 60.0)
