@@ -10,6 +10,7 @@ from shared_control.plant import PlantInterrupted
 from .callbacks import Callbacks
 from .episode import Episode
 from .learner import Learner
+from .threads import one_thread
 
 
 def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, callbacks: Callbacks | None = None,
@@ -30,7 +31,8 @@ def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, 
             continue
         callbacks.learning_started(episode)
         started = time.monotonic()
-        figures = learner.learn_from(episode)
+        with one_thread():
+            figures = learner.learn_from(episode)
         episode.learn_seconds = time.monotonic() - started
         callbacks.episode_learned(episode, figures)
 

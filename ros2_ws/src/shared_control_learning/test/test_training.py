@@ -4,11 +4,13 @@ import json
 from dataclasses import replace
 
 import pytest
+import torch
 from shared_control.cli import main
 from shared_control.run_folder import RunFolder
 from shared_control.teaching.profiles import profile
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode_table import read_rows
+from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import preset
 from shared_control_learning.training import TrainingError, TrainingRun, read_run, train
 
@@ -42,6 +44,15 @@ def test_a_run_that_was_killed_ends_as_one_that_was_not(tmp_path):
     assert run.returns == read_run(tmp_path / 'whole').returns
     assert [row['episode'] for row in read_rows(tmp_path / 'parts/episodes.csv')] == ['1', '2', '3']
     assert list((tmp_path / 'parts/tensorboard').iterdir())
+
+
+def test_a_seed_gives_the_same_policy_whatever_the_number_of_threads(tmp_path):
+    for threads in (2, 1):
+        torch.set_num_threads(threads)
+        train(preset('coached'), profile('expert'), 0, 1, evaluate_every=0, folder=tmp_path / str(threads))
+        assert torch.get_num_threads() == threads
+    one, two = (load_policy(tmp_path / name / POLICY_NAME).policy.state_dict() for name in ('1', '2'))
+    assert all(torch.equal(one[name], two[name]) for name in one)
 
 
 def test_another_run_is_not_mixed_in(tmp_path):
