@@ -21,7 +21,11 @@ setup(
     entry_points={
         'console_scripts': ['shared-control = shared_control.cli:main'],
         'shared_control.robots': ['panda = shared_control.robot.specs:PANDA'],
-        'shared_control.tasks': ['balance = shared_control.tasks.balance:Balance'],
+        'shared_control.tasks': [
+            'balance = shared_control.tasks.balance:Balance',
+            'plate = shared_control.tasks.plate:Plate',
+            'detour = shared_control.tasks.detour:Detour',
+        ],
         'shared_control.devices': ['keys = shared_control.teaching.key_device:KeyDevice'],
     },
 )

@@ -11,6 +11,8 @@ class Box:
     """m"""
     size: tuple[float, float, float]
     """m"""
+    is_obstacle: bool = False
+    """In the ball's way, and so drawn apart from what carries it."""
 
 
 @dataclass(frozen=True)
@@ -45,5 +47,9 @@ class Scene:
     home: tuple[float, float, float]
     """Where a ball is dropped onto the middle of the tray, with the arm at its reference joints, base frame, m."""
     goal_radius: float
-    """How near the middle the ball is where it should be, m."""
+    """How near the goal the ball is where it should be, m."""
+    goal: tuple[float, float] = (0.0, 0.0)
+    """Where the ball should be, in the tray's frame, m."""
+    density: float | None = None
+    """Density of what the tray is made of, kg/m^3; None: the tray is the one that the robot's own description has."""
     ball: Ball = Ball()

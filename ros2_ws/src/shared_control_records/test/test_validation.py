@@ -1,6 +1,7 @@
 """The thesis' validation: each of its checks agrees, and would notice if it did not."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from shared_control.control.references import cosine_reference, cosine_velocity
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import panda
 from shared_control_records.validation.chain import end_pose, full_chain, table_2_chain
+from shared_control_records.validation.compliance import check_compliance
 from shared_control_records.validation.figures import plots
 from shared_control_records.validation.model_checks import BOUND, check_model, home_figures
 from shared_control_records.validation.newton_euler import newton_euler
@@ -30,6 +32,22 @@ def test_all_of_the_model_agrees(checks):
     assert len(checks) == 5
     for check in checks:
         assert check.passed, check
+
+
+@pytest.fixture(scope='module')
+def compliances(model):
+    world = BulletWorld()
+    yield check_compliance(model, world)
+    world.close()
+
+
+def test_each_moment_tilts_the_tray_about_its_own_axis_as_predicted(compliances):
+    about_x, about_y = compliances
+    assert about_x.passed and about_y.passed
+    assert about_x.measured == pytest.approx((0.287, 0.0), abs=1e-3)
+    assert about_y.measured == pytest.approx((0.0, 0.483), abs=1e-3)
+    assert not replace(about_x, measured=(0.281, 0.0)).passed
+    assert not replace(about_x, measured=(0.287, 0.004)).passed
 
 
 def test_a_wrong_model_is_noticed():
@@ -103,10 +121,11 @@ def runs():
     return result
 
 
-def test_table_and_json(tmp_path, runs, model, checks):
-    validation = Validation(checks, home_figures(model), runs)
+def test_table_and_json(tmp_path, runs, model, checks, compliances):
+    validation = Validation(checks, home_figures(model), runs, compliances)
     assert validation.passed
     assert 'help at every frequency' in validation.table()
+    assert 'ok   m_x: 0.286 0.000, predicted by J^T W: 0.287 0.000' in validation.table()
     validation.write_json(tmp_path / 'new' / 'v.json')
     content = json.loads((tmp_path / 'new' / 'v.json').read_text())
     assert content['passed'] and len(content['tracking']) == 12
@@ -127,6 +146,6 @@ def test_terms_that_do_not_help_fail(runs, model):
     swapped = [run for run in runs if run.frequency != 0.5] + [
         Tracking(r.gains, not r.nonlinear_terms, r.frequency, r.seconds, r.reference, r.measured, r.distance,
                  r.manipulability) for r in runs if r.frequency == 0.5]
-    validation = Validation([], home_figures(model), swapped)
+    validation = Validation([], home_figures(model), swapped, [])
     assert validation.worse_with_terms == [0.5] and not validation.passed
     assert 'FAIL' in validation.table()

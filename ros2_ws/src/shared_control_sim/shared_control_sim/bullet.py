@@ -1,12 +1,15 @@
 """PyBullet: the arm, the tray on its flange, and a ball."""
 
 from operator import itemgetter
+from tempfile import NamedTemporaryFile
+from xml.etree import ElementTree
 
 import numpy as np
 import pybullet
 from shared_control.robot.model import GRAVITY
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
+from shared_control.robot.tray import carrying
 from shared_control.scene import Ball, Scene
 from shared_control.tasks.balance import BALANCE
 
@@ -28,14 +31,13 @@ class BulletWorld:
     """
 
     def __init__(self, scene: Scene = BALANCE.scene, dt: float = 0.001, spec: RobotSpec | None = None):
-        self.spec = spec = panda() if spec is None else spec
+        self.spec = spec = carrying(panda() if spec is None else spec, scene)
         self._dof = spec.dof
         self.dt = dt
         self.client = pybullet.connect(pybullet.DIRECT)
         pybullet.setGravity(0, 0, -GRAVITY, self.client)
         pybullet.setTimeStep(dt, self.client)
-        flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_IGNORE_VISUAL_SHAPES
-        self.arm = pybullet.loadURDF(str(spec.urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
+        self._load_arm()
         self._find_links()
         self._add_ball(scene.ball, scene.home)
         for index, q in zip(self._joints, spec.home, strict=True):
@@ -47,6 +49,23 @@ class BulletWorld:
         self._brakes = False
         self._push: np.ndarray | None = None
         self.reset(np.array(scene.home))
+
+    def _load_arm(self) -> None:
+        flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_IGNORE_VISUAL_SHAPES
+        if self.spec.tool_link is None:
+            self.arm = pybullet.loadURDF(
+                str(self.spec.urdf), useFixedBase=True, flags=flags, physicsClientId=self.client)
+            return
+        # PyBullet reads files only, and insists on finding the meshes that it then ignores.
+        robot = ElementTree.fromstring(self.spec.description)
+        for link in robot.findall('link'):
+            for visual in link.findall('visual'):
+                link.remove(visual)
+        pybullet.setAdditionalSearchPath(str(self.spec.urdf.parent), self.client)
+        with NamedTemporaryFile(suffix='.urdf') as file:
+            ElementTree.ElementTree(robot).write(file)
+            file.flush()
+            self.arm = pybullet.loadURDF(file.name, useFixedBase=True, flags=flags, physicsClientId=self.client)
 
     def _find_links(self) -> None:
         count = pybullet.getNumJoints(self.arm, physicsClientId=self.client)

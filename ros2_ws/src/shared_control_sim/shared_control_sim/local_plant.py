@@ -11,6 +11,7 @@ from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
+from shared_control.robot.tray import carrying
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts, Task
 from shared_control.world import World
@@ -38,7 +39,7 @@ class LocalPlant:
 
     def __init__(self, task: Task = BALANCE, person: Person | None = None, world: str = 'bullet',
                  robot: RobotSpec | None = None):
-        self.spec = panda() if robot is None else robot
+        self.spec = carrying(panda() if robot is None else robot, task.scene)
         self.world: World = load(WORLDS, world)(task.scene, CONTROL_PERIOD, self.spec)
         self.controller = ComputedTorqueController(RobotModel(self.spec), task.axes, dt=CONTROL_PERIOD)
         self._person = person

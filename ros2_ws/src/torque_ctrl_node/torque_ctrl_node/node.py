@@ -15,6 +15,7 @@ from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
 from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
 from shared_control.robot.model import RobotModel
+from shared_control.robot.tray import carrying
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -42,7 +43,8 @@ class TorqueCtrlNode:
         self.node = node = Node('torque_ctrl_node')
         robot = declare_robot(node)
         gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(robot.gains))
-        task = declare_task(node, 'The task: along which axes moments count.')
+        task = declare_task(node, 'The task: along which axes moments count, and which tray the robot carries.')
+        robot = carrying(robot, task.scene)
         self._timeout = declare(
             node, 'command_timeout', 0.1, 'A wrench older than this counts as zero.', unit='s',
             minimum=0.02, maximum=1.0)

@@ -27,7 +27,7 @@ class RobotModel:
 
     def __init__(self, spec: RobotSpec | None = None):
         self.spec = spec = panda() if spec is None else spec
-        self.pin_model = pin.buildModelFromUrdf(str(spec.urdf))
+        self.pin_model = pin.buildModelFromXML(spec.description)
         names = tuple(self.pin_model.names[1:])
         if names != spec.joints:
             raise ValueError(f'{spec.urdf} has the joints {names}; expected {spec.joints}')

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -48,6 +49,8 @@ class RobotSpec:
     """Reference joint positions, rad"""
     gains: dict[str, Gains]
     """By name; ``task`` is what tasks are taught with."""
+    tool_link: str | None = None
+    """URDF of the link that stands in for the one at ``tool_frame`` (:mod:`shared_control.robot.tray`); None: as is."""
     _torque_min: np.ndarray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -57,6 +60,18 @@ class RobotSpec:
     def dof(self) -> int:
         """n, the number of joints."""
         return len(self.joints)
+
+    @property
+    def description(self) -> str:
+        """The URDF as text, with the tool that the robot carries."""
+        text = self.urdf.read_text()
+        if self.tool_link is None:
+            return text
+        robot = ElementTree.fromstring(text)
+        links = [link.get('name') for link in robot]
+        place = links.index(self.tool_frame)
+        robot[place] = ElementTree.fromstring(self.tool_link)
+        return ElementTree.tostring(robot, encoding='unicode')
 
     def clamp_torque(self, torque: np.ndarray) -> np.ndarray:
         """``torque`` kept within the joints' limits, (n,), N m."""

@@ -76,7 +76,7 @@ class _File:
         urdf = self._urdf(self._text('urdf'))
         base_frame, tool_frame = self._text('base_frame'), self._text('tool_frame')
         self._check_urdf(urdf, joints, base_frame, tool_frame)
-        vectors = {key: self._vector(key, len(joints)) for key in _VECTORS}
+        vectors: dict[str, Any] = {key: self._vector(key, len(joints)) for key in _VECTORS}
         self._check_limits(vectors, joints)
         return RobotSpec(
             name, urdf, joints, base_frame, tool_frame, torque_rate_max=self._rate(), gains=self._gains(len(joints)),

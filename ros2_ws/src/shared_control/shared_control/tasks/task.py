@@ -75,9 +75,9 @@ class Task(ABC):
     def aim(self, ball: np.ndarray) -> np.ndarray:
         """Where a simulated tutor would send a ball that is at ``ball``: the goal, or a way-point on the way there.
 
-        Both (2,), m, in the frame of the tray: its middle unless a task overrides this.
+        Both (2,), m, in the frame of the tray: the scene's goal unless a task overrides this.
         """
-        return np.zeros(2)
+        return np.array(self.scene.goal)
 
     @abstractmethod
     def describe(self, state: PlantState, model: RobotModel) -> Any:

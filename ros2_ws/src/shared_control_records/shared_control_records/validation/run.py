@@ -12,6 +12,7 @@ from shared_control.robot.model import RobotModel
 from shared_control_sim.bullet import BulletWorld
 from tqdm import tqdm
 
+from .compliance import AGREEMENT, Compliance, check_compliance
 from .model_checks import BOUND, Check, HomeFigures, check_model, home_figures
 from .tracking import GAIN_SETS, SECONDS, SETTLING_SECONDS, Tracking, track
 
@@ -23,6 +24,7 @@ class Validation:
     checks: list[Check]
     home: HomeFigures
     runs: list[Tracking]
+    compliances: list[Compliance]
 
     @property
     def worse_with_terms(self) -> list[float]:
@@ -34,8 +36,9 @@ class Validation:
 
     @property
     def passed(self) -> bool:
-        """The model agrees, and the non-linear terms help, as Figs. 9-11 say."""
-        return all(check.passed for check in self.checks) and not self.worse_with_terms
+        """The model agrees, moments tilt the tray as predicted, and the non-linear terms help, as Figs. 9-11 say."""
+        return (all(check.passed for check in self.checks) and all(c.passed for c in self.compliances)
+                and not self.worse_with_terms)
 
     def table(self) -> str:
         """For reading."""
@@ -48,6 +51,9 @@ class Validation:
             f'{home.distance:.3f} m away',
             f'  manipulability: k_w = {home.manipulability:.4f}, '
             f'1 - k_w^2 = {home.one_minus_manipulability_squared:.4f}',
+            '', f'Tilt of the tray about x and y at rest, deg per N m (agreement: {100 * AGREEMENT:g} %)',
+            *(f'  {"ok  " if c.passed else "FAIL"} {c.axis}: {_pair(c.measured)}, predicted by J^T W: '
+              f'{_pair(c.predicted)}' for c in self.compliances),
             '', "RMS error of the tray's velocity along x, mm/s (in brackets: without the first "
             f'{SETTLING_SECONDS:g} s)',
             '  gains     Hz   with the non-linear terms       without them']
@@ -67,6 +73,7 @@ class Validation:
             'passed': self.passed,
             'checks': [{**asdict(check), 'bound': BOUND, 'passed': check.passed} for check in self.checks],
             'home': asdict(self.home),
+            'compliance': [{**asdict(c), 'unit': 'deg/(N m)', 'passed': c.passed} for c in self.compliances],
             'tracking': [{
                 'gains': run.gains, 'nonlinear_terms': run.nonlinear_terms, 'frequency_hz': run.frequency,
                 'rms_m_s': run.rms, 'rms_settled_m_s': run.rms_settled, 'max_distance_m': float(run.distance.max()),
@@ -82,7 +89,7 @@ def validate() -> Validation:
     runs = []
     with tqdm(total=1 + len(FREQUENCIES) * len(GAIN_SETS) * 2, unit='run', disable=None) as progress:
         progress.set_description('kinematics and dynamics')
-        checks, home = check_model(model), home_figures(model)
+        checks, home, compliances = check_model(model), home_figures(model), check_compliance(model, world)
         progress.update()
         for frequency in FREQUENCIES:
             reference = cosine_reference(model, frequency, SECONDS, CONTROL_PERIOD)
@@ -92,7 +99,11 @@ def validate() -> Validation:
                     runs.append(track(model, world, gains, nonlinear_terms, frequency, reference))
                     progress.update()
     world.close()
-    return Validation(checks, home, runs)
+    return Validation(checks, home, runs, compliances)
+
+
+def _pair(values: tuple[float, float]) -> str:
+    return ' '.join(f'{abs(value):.3f}' for value in values)
 
 
 def _point(point: tuple[float, float, float]) -> str:
