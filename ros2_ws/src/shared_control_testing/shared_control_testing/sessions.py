@@ -107,7 +107,7 @@ def lesson(steps: int = 100, seed: int = 0) -> Lesson:
 
 @dataclass
 class Recording:
-    """What a bag holds: (topic, received ns, message), changed by tests before it is written."""
+    """What a bag holds: (topic, received ns, message or its bytes), changed by tests before it is written."""
 
     messages: list[tuple[Topic, int, Any]] = field(default_factory=list)
 
@@ -131,7 +131,8 @@ class Recording:
                            for topic in contract.BAG_TOPICS if topic not in without}
             for topic, received_ns, content in sorted(self.messages, key=lambda entry: entry[1]):
                 if topic not in without:
-                    writer.write(connections[topic], received_ns, STORE.serialize_cdr(content, topic.type))
+                    raw = content if isinstance(content, bytes) else STORE.serialize_cdr(content, topic.type)
+                    writer.write(connections[topic], received_ns, raw)
         return path
 
 

@@ -115,13 +115,23 @@ class _Collector:
         self._times = [self._times[0] if self._times else received_ns, received_ns]
         if topic in self._bulk:
             self._bulk[topic].add(received_ns, raw)
-        elif topic in self._decoders:
-            message = self._reader.deserialize(raw, connection.msgtype)
-            self._rows.setdefault(topic, []).append((received_ns, *self._decoders[topic](message)))
-        elif topic == contract.KEYS.full_name:
-            self._add_keys(received_ns, self._reader.deserialize(raw, connection.msgtype))
-        elif topic == contract.DIAGNOSTICS.full_name:
-            self._add_statuses(received_ns, self._reader.deserialize(raw, connection.msgtype))
+        elif topic in self._decoders or topic in (contract.KEYS.full_name, contract.DIAGNOSTICS.full_name):
+            message = self._message(raw, connection.msgtype)
+            if message is None:
+                self._unusable[topic] += 1
+            elif topic in self._decoders:
+                self._rows.setdefault(topic, []).append((received_ns, *self._decoders[topic](message)))
+            elif topic == contract.KEYS.full_name:
+                self._add_keys(received_ns, message)
+            else:
+                self._add_statuses(received_ns, message)
+
+    def _message(self, raw: bytes, msgtype: str) -> Any:
+        """A message, or None when its bytes are garbled: anybody can have published it, and the others count."""
+        try:
+            return self._reader.deserialize(raw, msgtype)
+        except Exception:  # rosbags raises errors of many kinds
+            return None
 
     def finish(self, path: Path) -> Bag:
         """Everything as arrays."""
@@ -159,24 +169,24 @@ class _Collector:
         return Wrenches(received_ns, stamp_ns, np.hstack((force, torque))[:, self._axes])
 
     def _joint_state(self, raw: bytes) -> Row | None:
-        message: Any = self._reader.deserialize(raw, contract.JOINT_STATES.type)
-        if tuple(message.name) != self._robot.joints or not all(
+        message = self._message(raw, contract.JOINT_STATES.type)
+        if message is None or tuple(message.name) != self._robot.joints or not all(
                 len(values) == self._robot.dof for values in (message.position, message.velocity, message.effort)):
             return None
         stamp = message.header.stamp
         return np.array([stamp.sec, stamp.nanosec]), message.position, message.velocity, message.effort
 
     def _wrench(self, raw: bytes) -> Row | None:
-        message: Any = self._reader.deserialize(raw, contract.APPLIED_WRENCH.type)
-        if message.header.frame_id != self._robot.base_frame:
+        message = self._message(raw, contract.APPLIED_WRENCH.type)
+        if message is None or message.header.frame_id != self._robot.base_frame:
             return None
         stamp, force, torque = message.header.stamp, message.wrench.force, message.wrench.torque
         return (np.array([stamp.sec, stamp.nanosec]), np.array([force.x, force.y, force.z]),
                 np.array([torque.x, torque.y, torque.z]))
 
     def _command(self, raw: bytes) -> Row | None:
-        message: Any = self._reader.deserialize(raw, contract.EFFORT_COMMANDS.type)
-        return (message.data,) if len(message.data) == self._robot.dof else None
+        message = self._message(raw, contract.EFFORT_COMMANDS.type)
+        return None if message is None or len(message.data) != self._robot.dof else (message.data,)
 
     def _add_keys(self, received_ns: int, message: Any) -> None:
         source = message.header.frame_id
