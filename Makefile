@@ -4,9 +4,10 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 SRC := ros2_ws/src
+MINUTES := 60
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test lint bench weight count colcon clean
+.PHONY: help setup demo session test lint bench faults soak weight count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
@@ -14,6 +15,8 @@ help:
 	@echo 'make test     all tests'
 	@echo 'make lint     ruff, mypy, and who may import whom'
 	@echo 'make bench    measurements (out/bench.json)'
+	@echo 'make faults   faults at random moments of live sessions, and what must hold in spite of them (out/faults.json)'
+	@echo 'make soak     a long session, and whether anything grows; MINUTES=60 (out/soak.json)'
 	@echo 'make weight   what the controller alone installs (out/weight.json)'
 	@echo 'make count    the size of the code, and what is tied to one task or robot, at the first version and now'
 	@echo 'make colcon   colcon build and colcon test of the workspace'
@@ -54,6 +57,12 @@ weight: setup
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py --output out/bench.json
+
+faults: setup
+	$(BIN)/python benchmarks/faults.py $(ARGS)
+
+soak: setup
+	$(BIN)/python benchmarks/soak.py --minutes $(MINUTES)
 
 colcon: setup
 	PYTHON=$(BIN)/python tools/colcon.sh $(ARGS)

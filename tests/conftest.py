@@ -1,53 +1,15 @@
 """Fixtures of this folder: whole sessions in processes of their own, in a terminal or without one."""
 
 import json
-import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import pytest
 from shared_control_bringup import parameters
 from shared_control_learning.episode_table import read_rows
-from shared_control_ros.processes import leave_with_the_parent, node_module
+from shared_control_testing.live_session import Session
 from shared_control_testing.nodes import *  # noqa: F403
 from shared_control_testing.terminal import Terminal
-
-COMMAND = [sys.executable, '-m', 'shared_control', 'session']
-
-
-class Session:
-    """``shared-control session`` with ``arguments``, without a terminal."""
-
-    def __init__(self, arguments: list[str], **popen):
-        popen = {'stdin': subprocess.DEVNULL, 'start_new_session': True, 'preexec_fn': leave_with_the_parent} | popen
-        self.process = subprocess.Popen(
-            [*COMMAND, *arguments], text=True, **({'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT} | popen))
-
-    def node(self, name: str) -> int:
-        """The process id of a node; 0 while it does not run."""
-        children = Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
-        for child in children:
-            command = Path(f'/proc/{child}/cmdline')
-            if command.exists() and node_module(name) in command.read_text().split('\0'):
-                return int(child)
-        return 0
-
-    def output(self, timeout: float = 300.0) -> str:
-        """Wait for its end; what it said."""
-        return self.process.communicate(timeout=timeout)[0]
-
-    def close(self) -> None:
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-            try:
-                self.process.wait(40)
-            except subprocess.TimeoutExpired:
-                self.process.kill()
-                self.process.wait()
-        if self.process.stdout:
-            self.process.stdout.close()
 
 
 class TerminalSession(Session, Terminal):

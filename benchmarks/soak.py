@@ -1,0 +1,151 @@
+"""A long session with a simulated tutor: whether memory, descriptors, threads, shared memory or ticks grow.
+
+    python benchmarks/soak.py --minutes 60        # what `make soak MINUTES=60` runs
+
+Prints a line a minute for each process of the session and for the simulator's ticks, then what has grown. Growth is a
+slope over the minutes after the first fifth that is three times its standard error and more than what is allowed: a
+slope is a failure (exit code 1).
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from shared_control_ros import contract
+from shared_control_testing.faults.plan import NODES
+from shared_control_testing.live_session import Session
+from shared_control_testing.nodes import Observer, free_domain
+from tqdm import tqdm
+
+ALLOWED = {'memory_mb': 0.2, 'descriptors': 0.02, 'threads': 0.02, 'shared_memory_mb': 0.05, 'tick_p50_ms': 0.002}
+"""Growth a minute. The learner keeps every correction, some 20 kB an episode."""
+WARM_UP = 0.2
+"""Part of the samples that is left out."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One process, or the whole session, at one time."""
+
+    minute: float
+    of: str
+    memory_mb: float = 0.0
+    descriptors: float = 0.0
+    threads: float = 0.0
+    shared_memory_mb: float = 0.0
+    tick_p50_ms: float = 0.0
+    tick_p99_ms: float = 0.0
+
+
+def of_process(minute: float, name: str, process: int) -> Sample:
+    """A process by its id."""
+    status = dict(line.split(':', 1) for line in Path(f'/proc/{process}/status').read_text().splitlines())
+    return Sample(minute, name, memory_mb=int(status['VmRSS'].split()[0]) / 1024,
+                  descriptors=len(list(Path(f'/proc/{process}/fd').iterdir())), threads=int(status['Threads']))
+
+
+def shared_memory_mb() -> float:
+    """What the files in /dev/shm take."""
+    sizes = []
+    for file in Path('/dev/shm').iterdir():
+        try:
+            sizes.append(file.stat().st_blocks * 512)
+        except FileNotFoundError:
+            continue
+    return sum(sizes) / 2**20
+
+
+def growth(samples: list[Sample]) -> list[str]:
+    """What grows, in words."""
+    found = []
+    for name in dict.fromkeys(sample.of for sample in samples):
+        own = [sample for sample in samples if sample.of == name]
+        own = own[int(WARM_UP * len(own)):]
+        minutes = np.array([sample.minute for sample in own])
+        for figure, allowed in ALLOWED.items():
+            values = np.array([getattr(sample, figure) for sample in own])
+            slope, error = _slope(minutes, values)
+            if slope > allowed and slope > 3 * error:
+                found.append(f'{name}: {figure} grows by {slope:.4f} a minute (standard error {error:.4f}), '
+                             f'from {values[0]:.2f} to {values[-1]:.2f}; allowed {allowed}')
+    return found
+
+
+def _slope(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Of a straight line by least squares, and its standard error."""
+    if len(x) < 3:
+        return 0.0, float('inf')
+    design = np.stack([x - x.mean(), np.ones(len(x))], axis=1)
+    (slope, level), *_ = np.linalg.lstsq(design, y, rcond=None)
+    residual = y - design @ (slope, level)
+    return float(slope), float(np.sqrt(residual @ residual / (len(x) - 2) / (design[:, 0] @ design[:, 0])))
+
+
+def soak(minutes: float, every: float, folder: Path, domain: int) -> list[Sample]:
+    """Samples of a session of so many minutes, taken every ``every`` minutes."""
+    observer = Observer(domain)
+    diagnostics = observer.listen(contract.DIAGNOSTICS, 100)
+    log = (folder / 'session.log').open('w')
+    session = Session(['--tutor', 'sim', '--minutes', str(minutes + 2), '--episodes', '0', '--test-episodes', '0',
+                       '--output', str(folder / 'session')], stdout=log, stderr=log)
+    samples: list[Sample] = []
+    try:
+        observer.spin(lambda: _ticks(diagnostics), 120.0, 'ticks of the simulator')
+        begin = time.monotonic()
+        for number in tqdm(range(1, int(minutes / every) + 1), unit='sample', disable=None):
+            while time.monotonic() < begin + 60 * every * number:
+                observer.spin_for(0.5)
+            if session.process.poll() is not None:
+                raise SystemExit(f'the session ended early: {(folder / "session.log").read_text()[-2000:]}')
+            minute = every * number
+            fresh = [of_process(minute, name, process) for name in NODES if (process := session.node(name))]
+            fresh.append(of_process(minute, 'session', session.process.pid))
+            p50, p99 = _ticks(diagnostics) or (0.0, 0.0)
+            fresh.append(Sample(minute, 'all', shared_memory_mb=shared_memory_mb(), tick_p50_ms=p50, tick_p99_ms=p99))
+            diagnostics.clear()
+            for sample in fresh:
+                print('  '.join(f'{name} {value:.2f}' if isinstance(value, float) else f'{value:24}'
+                                for name, value in asdict(sample).items() if value), flush=True)
+            samples += fresh
+    finally:
+        session.close()
+        observer.close()
+        log.close()
+    return samples
+
+
+def _ticks(diagnostics: list[DiagnosticArray]) -> tuple[float, float] | None:
+    """The simulator's newest report of its ticks: p50 and p99, ms."""
+    for message in reversed(diagnostics):
+        for status in message.status:
+            values = {pair.key: pair.value for pair in status.values}
+            if status.name.endswith('panda_sim_node') and 'tick_p50_ms' in values:
+                return float(values['tick_p50_ms']), float(values['tick_p99_ms'])
+    return None
+
+
+def main() -> int:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--minutes', type=float, default=60.0, help='default: %(default)s')
+    parser.add_argument('--every', type=float, default=1.0, metavar='MINUTES', help='a sample (default: %(default)s)')
+    parser.add_argument('--output', type=Path, default=Path('out/soak.json'), help='default: %(default)s')
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, free_domain() as domain:
+        samples = soak(args.minutes, args.every, Path(folder), domain)
+    found = growth(samples)
+    print('\n'.join(found) or f'nothing grows in {args.minutes:g} minutes')
+    args.output.parent.mkdir(parents=True, exist_ok=True)
+    args.output.write_text(json.dumps({'growth': found, 'samples': [asdict(sample) for sample in samples]}, indent=2))
+    print(f'written to {args.output}')
+    return int(bool(found))
+
+
+if __name__ == '__main__':
+    sys.exit(main())

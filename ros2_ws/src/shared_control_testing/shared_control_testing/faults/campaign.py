@@ -1,0 +1,260 @@
+"""Runs the faults of a plan against sessions on the live graph, and looks at what has become of each."""
+
+import os
+import random
+import resource
+import signal
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from shared_control.contract import CONTROLLER_ENABLE, CONTROLLER_RESET
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool, Trigger
+
+from ..live_session import Session
+from ..nodes import Observer
+from .checks import violations
+from .messages import disturb
+from .plan import TOPICS, Fault
+
+EPISODES = 12
+"""Of a session; it meets as many faults as fit into it."""
+PARAMETERS = """\
+panda_sim_node: {ros__parameters: {paced: false}}
+ppo_agent_node: {ros__parameters: {episode_seconds: 4.0}}
+"""
+MUST_MOVE_S = 90.0
+"""Within so long after a fault the learner begins another phase, or the session ends."""
+DONE = {'kill': 'killed', 'stop': 'stopped and continued', 'delay': 'slowed down', 'disk full': 'could write no file',
+        'emergency stop': 'stopped, controller killed, then reset'}
+STOPPED_S = 1.0
+"""Time for an emergency stop to bring the arm to rest."""
+
+
+@dataclass
+class Outcome:
+    """What became of a fault."""
+
+    fault: Fault
+    session: str
+    what: str = ''
+    """What was done, and when."""
+    violations: list[str] = field(default_factory=list)
+
+
+class Campaign:
+    """A row of sessions and the faults that befall them.
+
+    Args:
+        faults: in their order.
+        folder: for the sessions' folders; made.
+        domain: the ROS domain of the sessions.
+        say: called with a line for every fault.
+    """
+
+    def __init__(self, faults: list[Fault], folder: Path, domain: int, say: Callable[[str], None] = print):
+        self._waiting = list(faults)
+        self._folder, self._domain, self._say = folder, domain, say
+        self.outcomes: list[Outcome] = []
+        folder.mkdir(parents=True, exist_ok=True)
+        self._parameters = folder / 'unpaced.yaml'
+        self._parameters.write_text(PARAMETERS)
+
+    def run(self, deadline: float = float('inf')) -> list[Outcome]:
+        """All faults, or those that begin before ``deadline`` (``time.monotonic()``)."""
+        number = 0
+        while self._waiting and time.monotonic() < deadline:
+            number += 1
+            self._run_session(self._folder / f'session_{number:03d}', deadline)
+        return self.outcomes
+
+    def _run_session(self, folder: Path, deadline: float) -> None:
+        graph = _Graph(self._domain)
+        session = self._start(folder)
+        of_session: list[Outcome] = []
+        killed_ns: list[int] = []
+        try:
+            while self._waiting and time.monotonic() < deadline:
+                if not graph.wait_for_phase(self._waiting[0].phase, session):
+                    break
+                fault = self._waiting.pop(0)
+                outcome = Outcome(fault, folder.name)
+                of_session.append(outcome)
+                time.sleep(fault.wait)
+                if session.process.poll() is not None:
+                    self._waiting.insert(0, fault)
+                    of_session.pop()
+                    break
+                if fault.kind == 'interrupt':
+                    session = self._interrupt(session, folder, outcome)
+                else:
+                    self._inject(outcome, session, graph, killed_ns)
+                self._say(f'{fault}: {outcome.what}')
+                moved = graph.wait_for_change(session, MUST_MOVE_S)
+                if not moved:
+                    outcome.violations.append(f'standstill: no phase began within {MUST_MOVE_S:.0f} s')
+                    break
+            self._end(session, of_session)
+        finally:
+            session.close()
+            graph.close()
+        self._check(folder, of_session, killed_ns)
+        self.outcomes += of_session
+
+    def _start(self, folder: Path, *options: str) -> Session:
+        log = (self._folder / f'{folder.name}.log').open('a')
+        arguments = options or (
+            '--tutor', 'sim', '--episodes', str(EPISODES), '--test-episodes', '1', '--seed', '0',
+            '--params-file', str(self._parameters), '--output', str(folder))
+        with log:
+            return Session(list(arguments), stdout=log, stderr=log)
+
+    def _interrupt(self, session: Session, folder: Path, outcome: Outcome) -> Session:
+        """Ctrl-C, and on with what is there."""
+        session.process.send_signal(signal.SIGINT)
+        outcome.what = 'Ctrl-C, then --resume'
+        code = session.process.wait(120)
+        if code not in (0, 130):
+            outcome.violations.append(f'end: exit code {code} after Ctrl-C')
+        return self._start(folder, '--resume', str(folder))
+
+    def _inject(self, outcome: Outcome, session: Session, graph: '_Graph', killed_ns: list[int]) -> None:
+        fault = outcome.fault
+        topics = {topic.name: topic for topic in TOPICS}
+        if fault.target in topics:
+            sent = graph.disturb(contract.ros_topic(topics[fault.target]), fault)
+            outcome.what = f'{sent} messages'
+            return
+        process = session.node(fault.target)
+        if not process:
+            outcome.what = 'the node was not there'
+            return
+        outcome.what = DONE.get(fault.kind, '')
+        with suppress(ProcessLookupError):  # it may die of it
+            match fault.kind:
+                case 'kill':
+                    if fault.target == 'session_recorder_node':
+                        killed_ns.append(time.time_ns())
+                    os.kill(process, signal.SIGKILL)
+                case 'stop':
+                    _paused(process, fault.seconds, graph.serve)
+                case 'delay':
+                    draw = random.Random(fault.seed)
+                    end = time.monotonic() + fault.seconds
+                    while time.monotonic() < end:
+                        _paused(process, draw.uniform(0.005, 0.1), graph.serve)
+                        time.sleep(draw.uniform(0.005, 0.1))
+                case 'disk full':
+                    before = resource.prlimit(process, resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
+                    graph.serve_for(fault.seconds)
+                    resource.prlimit(process, resource.RLIMIT_FSIZE, before)
+                case 'emergency stop':
+                    outcome.violations += graph.emergency_stop(session, process)
+
+    def _end(self, session: Session, outcomes: list[Outcome]) -> None:
+        """Let it come to its end, or ask it to: whichever, in order."""
+        if session.process.poll() is None:
+            session.process.send_signal(signal.SIGINT)
+        try:
+            code = session.process.wait(180)
+        except Exception:
+            outcomes[-1].violations.append('end: the session did not end within 180 s of Ctrl-C')
+            return
+        if code not in (0, 130) and outcomes:
+            outcomes[-1].violations.append(f'end: exit code {code}')
+
+    def _check(self, folder: Path, outcomes: list[Outcome], killed_ns: list[int]) -> None:
+        """What does not hold in the folder counts for the session's last fault; the line says which session."""
+        if not outcomes:
+            return
+        lost_rows = any(outcome.fault.target == 'session_recorder_node' for outcome in outcomes)
+        outcomes[-1].violations += violations(folder, killed_ns, lost_rows)
+        for outcome in outcomes:
+            for violation in outcome.violations:
+                self._say(f'VIOLATION after {outcome.fault} ({outcome.session}): {violation}')
+
+
+class _Graph:
+    """The campaign's own node on the sessions' graph."""
+
+    def __init__(self, domain: int):
+        self.observer = Observer(domain)
+        self._phases = self.observer.listen(contract.PHASE, 100)
+        self._seen = 0
+        self._heard: dict[str, Polled] = {}
+
+    def disturb(self, topic: contract.Topic, fault: Fault) -> int:
+        """Mix a stranger's messages into a topic; how many."""
+        if topic.name not in self._heard:
+            self._heard[topic.name] = Polled(self.observer.node, topic)
+            self.serve_for(0.5)  # until the publishers have found it
+        return disturb(self.observer.node, topic, self._heard[topic.name], fault.kind, fault.seconds, fault.seed,
+                       self.serve)
+
+    def serve(self) -> None:
+        """Take what waits."""
+        self.observer.take_all()
+
+    def serve_for(self, seconds: float) -> None:
+        """Take what comes for so long."""
+        self.observer.spin_for(seconds)
+
+    def wait_for_phase(self, phase: str, session: Session, timeout: float = 120.0) -> bool:
+        """Wait for the beginning of ``phase``; False when the session ends or that does not come."""
+        deadline = time.monotonic() + timeout
+        while session.process.poll() is None and time.monotonic() < deadline:
+            self.serve_for(0.02)
+            fresh, self._seen = self._phases[self._seen:], len(self._phases)
+            if any(message.data == phase for message in fresh):
+                return True
+        return False
+
+    def wait_for_change(self, session: Session, timeout: float) -> bool:
+        """Wait for the beginning of any phase, or for the session's end; whether either came."""
+        deadline = time.monotonic() + timeout
+        before = self._seen = len(self._phases)
+        while time.monotonic() < deadline:
+            if session.process.poll() is not None or len(self._phases) > before:
+                return True
+            self.serve_for(0.05)
+        return False
+
+    def emergency_stop(self, session: Session, controller: int) -> list[str]:
+        """Stop, kill the controller, see that it stays stopped, and reset; what was wrong."""
+        observer = self.observer
+        publisher = observer.publisher(contract.EMERGENCY_STOP)
+        observer.spin(lambda: publisher.get_subscription_count(), what='a subscriber of /emergency_stop')
+        publisher.publish(Bool(data=True))
+        observer.spin_for(STOPPED_S)
+        with suppress(ProcessLookupError):
+            os.kill(controller, signal.SIGKILL)
+        observer.spin(lambda: session.node('torque_ctrl_node') not in (0, controller), 60.0, 'a new controller')
+        commands = observer.listen(contract.EFFORT_COMMANDS)
+        observer.spin(lambda: observer.node.count_publishers(contract.EFFORT_COMMANDS.name) > 0, 60.0, 'its commands')
+        observer.spin_for(2 * STOPPED_S)
+        wrong = [f'emergency stop: {len(commands)} torques after a restart of the controller'] if commands else []
+        observer.call(Trigger, CONTROLLER_RESET.name, Trigger.Request())
+        observer.call(SetBool, CONTROLLER_ENABLE.name, SetBool.Request(data=True))
+        observer.node.destroy_publisher(publisher)
+        return wrong
+
+    def close(self) -> None:
+        """Leave."""
+        self.observer.close()
+
+
+def _paused(process: int, seconds: float, serve: Callable[[], None]) -> None:
+    """Stop a process for a while."""
+    os.kill(process, signal.SIGSTOP)
+    try:
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            serve()
+            time.sleep(min(0.02, seconds))
+    finally:
+        os.kill(process, signal.SIGCONT)

@@ -1,0 +1,46 @@
+"""``shared-control session`` as a process, for tests and for the fault campaign."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from shared_control_ros.processes import leave_with_the_parent, node_module
+
+COMMAND = [sys.executable, '-m', 'shared_control', 'session']
+
+
+class Session:
+    """``shared-control session`` with ``arguments``, without a terminal."""
+
+    def __init__(self, arguments: list[str], **popen: Any):
+        options: dict[str, Any] = {
+            'stdin': subprocess.DEVNULL, 'stdout': subprocess.PIPE, 'stderr': subprocess.STDOUT,
+            'start_new_session': True, 'preexec_fn': leave_with_the_parent, **popen}
+        self.process: subprocess.Popen[str] = subprocess.Popen([*COMMAND, *arguments], text=True, **options)
+
+    def node(self, name: str) -> int:
+        """The process id of the node ``name``; 0 while it does not run."""
+        children = Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
+        for child in children:
+            command = Path(f'/proc/{child}/cmdline')
+            if command.exists() and node_module(name) in command.read_text().split('\0'):
+                return int(child)
+        return 0
+
+    def output(self, timeout: float = 300.0) -> str:
+        """Wait for its end, and return what it printed."""
+        return self.process.communicate(timeout=timeout)[0]
+
+    def close(self) -> None:
+        """End it, if it has not ended."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            try:
+                self.process.wait(40)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        if self.process.stdout:
+            self.process.stdout.close()
