@@ -23,7 +23,7 @@ from .messages import disturb
 from .plan import TOPICS, Fault
 
 EPISODES = 12
-"""Of a session; it meets as many faults as fit into it."""
+"""How many a session teaches; it meets as many faults as fit into it."""
 PARAMETERS = """\
 panda_sim_node: {ros__parameters: {paced: false}}
 ppo_agent_node: {ros__parameters: {episode_seconds: 4.0}}

@@ -46,7 +46,7 @@ class Fault:
     seconds: float
     """How long it lasts; a kill has no duration."""
     seed: int
-    """Of what is random in it."""
+    """Seed of what is random in it."""
 
     def __str__(self) -> str:
         duration = '' if self.kind in ('kill', 'interrupt') else f' for {self.seconds:.1f} s'
