@@ -28,6 +28,7 @@ setup(
         ],
         'shared_control.learners': [
             'coached = shared_control_learning.presets:COACHED',
+            'coached_network = shared_control_learning.presets:COACHED_NETWORK',
             'thesis = shared_control_learning.presets:THESIS_PPO',
             'autonomous = shared_control_learning.presets:AUTONOMOUS',
         ],

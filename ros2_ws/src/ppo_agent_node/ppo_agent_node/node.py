@@ -14,9 +14,8 @@ import numpy as np
 from rclpy.node import Node
 from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
-from shared_control.plugins import LEARNERS, names
+from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.rates import POLICY_PERIOD
-from shared_control.tasks.balance import BALANCE
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.episode_table import TABLE_NAME, EpisodeTable
@@ -24,7 +23,7 @@ from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.learn import learn
 from shared_control_learning.learner import Learner
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
-from shared_control_learning.presets import preset
+from shared_control_learning.presets import Preset, preset, preset_for
 from shared_control_learning.warm_up import warm_up
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
@@ -51,14 +50,17 @@ class PpoAgentNode(Callbacks):
         self.node = node = Node('ppo_agent_node')
         mode = declare(
             node, 'mode', 'teach', 'teach: learn, then test. test: only test a policy.', choices=('teach', 'test'))
-        preset_name = declare(
-            node, 'preset', 'coached', 'What is learned and how (mode teach).', choices=names(LEARNERS))
+        chosen = preset_for(
+            declare(node, 'task', '', 'What is learned (mode teach); empty: what the preset was made for.',
+                    choices=('', *names(TASKS))),
+            declare(node, 'preset', '', 'How it is learned (mode teach); empty: as the task is.',
+                    choices=('', *names(LEARNERS))))
         seed = declare(node, 'seed', 0, 'Of weights, exploration and ball starts.', minimum=0, maximum=2**31 - 1)
         self._episodes = declare(
             node, 'episodes', 0, 'Teach until this many, those of an earlier run included; 0: until '
             'learner/finish is called or the time is up.', minimum=0, maximum=100_000)
         self._episode_seconds = declare(
-            node, 'episode_seconds', BALANCE.episode_seconds, 'The longest an episode of teaching lasts.',
+            node, 'episode_seconds', chosen.task.episode_seconds, 'The longest an episode of teaching lasts.',
             unit='s', minimum=1.0, maximum=600.0)
         minutes = declare(
             node, 'max_minutes', 45.0, 'Teach for this long at the most.', unit='min', minimum=0.1, maximum=1440.0)
@@ -78,7 +80,7 @@ class PpoAgentNode(Callbacks):
         self._policy_path: Path | None = None
         self._table: EpisodeTable | None = None
         if self._teaches:
-            self._learner = self._make_learner(preset_name, seed, output, resume)
+            self._learner = self._make_learner(chosen, seed, output, resume)
         else:
             if not self._test_episodes:
                 raise ParameterError("parameter 'test_episodes' must be at least 1 in mode 'test'")
@@ -96,19 +98,21 @@ class PpoAgentNode(Callbacks):
         node.create_service(Trigger, contract.REPEAT_SERVICE, self._on_repeat)
         node.create_service(Trigger, contract.FINISH_SERVICE, self._on_finish)
 
-    def _make_learner(self, preset_name: str, seed: int, output: str, resume: bool) -> Learner:
+    def _make_learner(self, chosen: Preset, seed: int, output: str, resume: bool) -> Learner:
         """A new learner, or the one in the output folder."""
-        learner = preset(preset_name).make(seed)
+        learner = chosen.make(seed)
         if output:
             folder = Path(output)
             folder.mkdir(parents=True, exist_ok=True)
             self._policy_path = folder / POLICY_NAME
             if self._policy_path.exists():
                 learner = _load(self._policy_path, 'output')
-                if learner.name != preset_name:
-                    raise ParameterError(
-                        f"parameter 'preset' is {preset_name!r}, but {self._policy_path} was learned with "
-                        f'{learner.name!r}: name that one, or another output folder')
+                for parameter, given, stored in (
+                        ('preset', chosen.name, learner.name), ('task', chosen.task.name, learner.task.name)):
+                    if given != stored:
+                        raise ParameterError(
+                            f'parameter {parameter!r} is {given!r}, but {self._policy_path} was learned with '
+                            f'{stored!r}: name that one, or another output folder')
                 self.node.get_logger().info(
                     f'going on after episode {learner.episode} of {self._policy_path} (seed {learner.seed})')
             self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)

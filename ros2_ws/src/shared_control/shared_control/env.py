@@ -20,7 +20,7 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     - Reward: the sum of the task's terms, times ``task.reward_scale``.
     - Terminated when the task has failed; truncated after ``task.episode_seconds``.
     - ``info``: ``agent``, ``human``, ``applied`` (moments as they counted, (k,), N m), ``reward_terms`` (unscaled),
-      ``state`` (the task's), ``failed``.
+      ``state`` (the task's), ``on_tray`` (see :meth:`Task.on_tray`), ``failed``.
 
     Args:
         plant: in this process (``shared_control_sim.local_plant.LocalPlant``) or on the graph.
@@ -63,7 +63,7 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         failed = self.task.failed(state)
         info = {
             'agent': plant_state.agent.copy(), 'human': plant_state.human.copy(), 'applied': plant_state.applied.copy(),
-            'reward_terms': terms, 'state': state, 'failed': failed}
+            'reward_terms': terms, 'state': state, 'on_tray': self.task.on_tray(state), 'failed': failed}
         reward = sum(terms.values()) * self.task.reward_scale
         return self.task.observe(state), reward, failed, not failed and self._step >= self._steps, info
 

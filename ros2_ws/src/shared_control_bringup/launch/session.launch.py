@@ -12,7 +12,7 @@ from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
-from shared_control.plugins import LEARNERS, names
+from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_bringup.graph import Role, named, nodes_of, overrides
 from shared_control_bringup.launching import (
@@ -33,11 +33,12 @@ def start_nodes(context: LaunchContext) -> list[Node]:
     settings = Settings(
         tutor=LaunchConfiguration('tutor').perform(context),
         profile=LaunchConfiguration('profile').perform(context),
+        task=LaunchConfiguration('task').perform(context),
         preset=LaunchConfiguration('preset').perform(context),
         episodes=int(LaunchConfiguration('episodes').perform(context)),
         minutes=float(LaunchConfiguration('minutes').perform(context)),
         seed=int(LaunchConfiguration('seed').perform(context)),
-        page=host_and_port(LaunchConfiguration('page').perform(context)))
+        page=host_and_port(LaunchConfiguration('page').perform(context))).resolved()
     by_hand = settings.tutor == 'keyboard'
     given = overrides(settings, Path(LaunchConfiguration('output').perform(context)), shows_screen=by_hand)
     return [graph_node(node.name, parameters=given[node.name], output='own_log' if by_hand else 'screen')
@@ -51,8 +52,9 @@ def generate_launch_description() -> LaunchDescription:
                               description='Who teaches: you, here or in a browser, a simulated tutor, or nobody.'),
         DeclareLaunchArgument('profile', default_value='expert', choices=list(TUTOR_NAMES),
                               description='Of the simulated tutor.'),
-        DeclareLaunchArgument('preset', default_value='coached', choices=names(LEARNERS),
-                              description='What is learned and how.'),
+        DeclareLaunchArgument('task', default_value='balance', choices=names(TASKS), description='What is learned.'),
+        DeclareLaunchArgument('preset', default_value='', choices=['', *names(LEARNERS)],
+                              description='How it is learned; empty: as the task is.'),
         DeclareLaunchArgument('episodes', default_value='0',
                               description='Teach this many, then test; 0: until somebody says that it has learned it.'),
         DeclareLaunchArgument('minutes', default_value='45.0', description='Teach for this long at the most.'),

@@ -60,29 +60,29 @@ ALONE: dict[str, dict[str, Any]] = {'torque_ctrl_node': {'enabled': False}}
 real one, and a controller that died must not move it again by itself."""
 
 
-def _of_the_task(preset_name: str) -> dict[str, Any]:
-    """What the controller takes from the task of a preset."""
-    from shared_control_learning.presets import preset  # late: `--help` need not wait for pinocchio
-    task = preset(preset_name).task
+def _of_the_task(settings: Settings) -> dict[str, Any]:
+    """What the controller takes from the task."""
+    from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
+    task = preset_for(settings.task, settings.preset).task
     return {'task': task.name, 'moment_limit': float(task.limit.max())}
 
 
 NODES = (
     SessionNode('session_recorder_node', lambda s: {'output': str(s.folder.bag)}),
     SessionNode('torque_ctrl_node', lambda s: {
-        **_of_the_task(s.settings.preset), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
+        **_of_the_task(s.settings), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
     SessionNode('panda_sim_node', lambda s: {
-        'task': _of_the_task(s.settings.preset)['task'], 'seed': s.settings.seed}, Role.CONTROL_LOOP),
+        'task': _of_the_task(s.settings)['task'], 'seed': s.settings.seed}, Role.CONTROL_LOOP),
     SessionNode('teleop_key_node', lambda s: {
-        'task': _of_the_task(s.settings.preset)['task'],
+        'task': _of_the_task(s.settings)['task'],
         'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
     SessionNode('sim_tutor_node', lambda s: {
-        'task': _of_the_task(s.settings.preset)['task'], 'profile': s.settings.profile,
+        'task': _of_the_task(s.settings)['task'], 'profile': s.settings.profile,
         'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
                 tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {
-        'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
+        'task': s.settings.task, 'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
         'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',
         'output': str(s.folder.learner)}, Role.LEADER),
 )

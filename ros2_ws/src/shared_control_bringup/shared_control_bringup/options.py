@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from shared_control.plugins import LEARNERS, names
+from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_ros.host_and_port import host_and_port
 
@@ -29,7 +29,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         f'a token (default: {default.page[0]}:{default.page[1]})', type=host_and_port, metavar='HOST:PORT')
     add('--profile', f'who the simulated tutor is: a profile, or a family, of which the seed draws one (default: '
         f'{default.profile})', choices=TUTOR_NAMES)
-    add('--preset', f'what is learned and how (default: {default.preset})', choices=names(LEARNERS))
+    add('--task', 'what is learned (default: what the preset was made for; balance)', choices=names(TASKS))
+    add('--preset', 'how it is learned (default: as the task is; coached)', choices=names(LEARNERS))
     add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '
         f'{default.episodes})', type=int)
     add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float)
@@ -44,7 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--resume', type=Path, metavar='FOLDER',
         help='go on with an earlier session: its learner, its parameters, its folder, and its settings unless other '
-        'options change them; all may be given but --preset, --seed, --output, --overwrite and --params-file')
+        'options change them; all may be given but --task, --preset, --seed, --output, --overwrite and --params-file')
 
 
 def given_settings(args: argparse.Namespace) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from shared_control_records.bag import annotate, recover
+from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata
 from shared_control_records.session.folder import SessionFolder
 
@@ -56,14 +57,14 @@ def run(args: argparse.Namespace) -> int:
     ros_parameters.save(
         ros_parameters.lay_over(parameters, overrides(settings, folder.path, shows_screen)), folder.parameters)
 
-    print(f'Session in {folder.path}: {settings.preset}, tutor: {settings.teacher}.', flush=True)
+    print(f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
     end, restarts = teach(folder, settings.tutor, shows_screen, page)
     _report(folder, end, restarts, settings.test_episodes)
     return end.value
 
 
 def _new_settings(args: argparse.Namespace) -> Settings:
-    return Settings().with_options(given_settings(args))
+    return Settings().with_options(given_settings(args)).resolved()
 
 
 def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settings:
@@ -76,7 +77,7 @@ def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settin
         settings = Settings.from_json(content)
     except ValueError as error:
         raise ValueError(f'cannot use {folder.settings}: {error}') from error
-    return settings.resumed_with(given_settings(args))
+    return settings.resumed_with(given_settings(args)).resolved()
 
 
 def _report(folder: SessionFolder, end: End, restarts: int, test_episodes: int) -> None:
@@ -92,7 +93,7 @@ def _report(folder: SessionFolder, end: End, restarts: int, test_episodes: int) 
     if end is End.DONE and test_episodes:
         test_policy(folder, test_episodes)
     if folder.bag.exists() and any(folder.bag.glob('*.mcap')):
-        annotate(folder.bag, bag_metadata.RECORD, bag_metadata.pack(folder, restarts))
+        annotate(folder.bag, RECORD, bag_metadata.pack(folder, restarts))
     tell_summary(folder, write_report(folder, restarts))
     if end is not End.DONE:
         print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}')

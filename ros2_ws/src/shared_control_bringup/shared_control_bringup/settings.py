@@ -4,13 +4,13 @@ import math
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-from shared_control.plugins import LEARNERS, names
+from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
 SIMULATED = 'simulated: '
 """Before the profile, where settings.json names a simulated tutor."""
-FIXED = ('preset', 'seed')
+FIXED = ('task', 'preset', 'seed')
 """What a session that goes on cannot change: the learner was made with it."""
 
 
@@ -22,8 +22,10 @@ class Settings:
         ValueError: a value is none that a session can run with; the message names the option.
     """
 
-    preset: str = 'coached'
-    """What is learned and how."""
+    task: str = ''
+    """What is learned; empty: what the preset was made for."""
+    preset: str = ''
+    """How it is learned; empty: as the task is."""
     tutor: str = 'keyboard'
     """Who teaches: one of ``TUTORS``."""
     profile: str = 'expert'
@@ -44,7 +46,9 @@ class Settings:
     """Who taught the earlier parts of a session that went on with another tutor, as settings.json names them."""
 
     def __post_init__(self) -> None:
-        for option, value, choices in (('--preset', self.preset, names(LEARNERS)), ('--tutor', self.tutor, TUTORS),
+        for option, value, choices in (('--task', self.task, ('', *names(TASKS))),
+                                       ('--preset', self.preset, ('', *names(LEARNERS))),
+                                       ('--tutor', self.tutor, TUTORS),
                                        ('--profile', self.profile, TUTOR_NAMES)):
             if value not in choices:
                 raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
@@ -60,6 +64,12 @@ class Settings:
     def teacher(self) -> str:
         """The tutor as settings.json names it: a simulated one with its profile."""
         return f'{SIMULATED}{self.profile}' if self.tutor == 'sim' else self.tutor
+
+    def resolved(self) -> 'Settings':
+        """These settings with task and preset by name."""
+        from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
+        chosen = preset_for(self.task, self.preset)
+        return replace(self, task=chosen.task.name, preset=chosen.name)
 
     def with_options(self, given: dict[str, Any]) -> 'Settings':
         """These settings with the options that were given, some of which mean nothing without another.

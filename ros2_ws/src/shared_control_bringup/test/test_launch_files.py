@@ -22,8 +22,8 @@ PACKAGES = PACKAGE.parent
 FILES = sorted((PACKAGE / 'launch').glob('*.launch.py'))
 LAUNCHING = ast.parse((PACKAGE / 'shared_control_bringup' / 'launching.py').read_text())
 ARGUMENTS = {
-    'tutor': 'keyboard', 'profile': 'expert', 'preset': 'coached', 'episodes': '0', 'minutes': '45', 'seed': '0',
-    'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node'}
+    'tutor': 'keyboard', 'profile': 'expert', 'task': 'balance', 'preset': '', 'episodes': '0', 'minutes': '45',
+    'seed': '0', 'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node'}
 HELPERS = {item.name: item for item in LAUNCHING.body if isinstance(item, ast.FunctionDef)}
 
 
@@ -146,7 +146,7 @@ def test_nodes_and_their_parameters_exist(started):
 def test_a_launch_starts_the_nodes_that_a_session_starts(started, tutor):
     arguments = {**ARGUMENTS, 'tutor': tutor, 'seed': '7', 'page': '0.0.0.0:9000'}
     nodes = started('session.launch.py', **arguments)
-    settings = Settings(tutor=tutor, seed=7, page=('0.0.0.0', 9000))
+    settings = Settings(tutor=tutor, seed=7, page=('0.0.0.0', 9000)).resolved()
     expected = overrides(settings, Path('out/session'), shows_screen=tutor == 'keyboard')
     assert {node.kwargs['executable']: given_to(node) for node in nodes} == expected
     assert [node.kwargs['executable'] for node in nodes] == list(expected)

@@ -127,7 +127,8 @@ def test_a_session_goes_on_with_its_parameters_and_the_options_given_now(session
 
 
 @pytest.mark.parametrize('arguments', [
-    ['--preset', 'thesis'], ['--seed', 1], ['--output', 'elsewhere'], ['--overwrite'], ['--params-file', DEFAULTS],
+    ['--preset', 'thesis'], ['--task', 'plate'],
+    ['--seed', 1], ['--output', 'elsewhere'], ['--overwrite'], ['--params-file', DEFAULTS],
     ['--episodes', -1], ['--tutor', 'keyboard']])
 def test_what_cannot_change_when_a_session_goes_on_is_refused(session, tmp_path, capsys, arguments):
     folder = tmp_path / 'session'

@@ -18,7 +18,7 @@ def options(*arguments):
 @pytest.mark.parametrize('given', [
     {'episodes': -1}, {'episodes': 100_001}, {'minutes': 0.0}, {'minutes': -3.0}, {'minutes': math.nan},
     {'minutes': math.inf}, {'test_episodes': -1}, {'seed': -1}, {'seed': 2**31}, {'page': ('127.0.0.1', 65536)},
-    {'preset': 'magic'}, {'tutor': 'dog'}, {'profile': 'perfect'}])
+    {'preset': 'magic'}, {'task': 'juggle'}, {'tutor': 'dog'}, {'profile': 'perfect'}])
 def test_values_that_no_session_can_run_with_are_refused_by_name(given):
     with pytest.raises(ValueError, match='--' + next(iter(given)).replace('_', '-')):
         Settings(**given)
@@ -64,7 +64,7 @@ def test_who_taught_before_is_not_forgotten():
     assert settings.to_json()['earlier_tutors'] == ('simulated: low', 'simulated: expert')
 
 
-@pytest.mark.parametrize('given', [('--preset', 'thesis'), ('--seed', 3)])
+@pytest.mark.parametrize('given', [('--preset', 'thesis'), ('--task', 'plate'), ('--seed', 3)])
 def test_what_the_learner_was_made_with_cannot_change(given):
     with pytest.raises(ValueError, match=f'{given[0]} cannot change in a session that goes on'):
         Settings().resumed_with(options(*given))

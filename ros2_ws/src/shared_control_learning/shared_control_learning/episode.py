@@ -36,6 +36,8 @@ class Episode:
     """Position error of each step, m (see ``TaskState``)"""
     velocity: list[float] = field(default_factory=list)
     """Velocity of each step, m/s (see ``TaskState``)"""
+    on_tray: list[tuple[float, float]] = field(default_factory=list)
+    """Where the ball was after each step, in the tray's frame, m; empty when the task does not give it."""
     reward_terms: dict[str, float] = field(default_factory=dict)
     """Sums by name, unscaled."""
     failed: bool = False
@@ -61,6 +63,8 @@ class Episode:
         self.applied.append(info['applied'])
         self.position_error.append(info['state'].position_error)
         self.velocity.append(info['state'].velocity)
+        if (on_tray := info.get('on_tray')) is not None:
+            self.on_tray.append(on_tray)
         for name, value in info['reward_terms'].items():
             self.reward_terms[name] += value
         self.failed = info['failed']

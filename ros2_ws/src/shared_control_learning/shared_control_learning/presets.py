@@ -1,10 +1,10 @@
 """What is learned and how, by name: each is an entry point of the group ``shared_control.learners``."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from shared_control.plugins import LEARNERS, load
+from shared_control.plugins import LEARNERS, TASKS, load
 from shared_control.tasks.balance import BALANCE, THESIS
 from shared_control.tasks.task import Task
 
@@ -45,6 +45,11 @@ class PpoPreset(Preset):
 COACHED = PpoPreset('coached', BALANCE, PpoLearnerSettings(
     PpoSettings(initial_std=0.4, std_decay=0.93, learning_rate=3e-2, learning_rate_decay=0.93), CoachingSettings()))
 """Corrections are labels, too."""
+COACHED_NETWORK = PpoPreset('coached_network', BALANCE, PpoLearnerSettings(
+    PpoSettings(hidden=(32, 32), initial_std=0.3, std_decay=0.93, learning_rate=1e-2, learning_rate_decay=0.95,
+                epochs=40, max_gradient_norm=5.0),
+    CoachingSettings(delays=(0.2, 0.3, 0.4, 0.5), memory_episodes=8, weight=100.0, fade_episodes=100)))
+"""Corrections are labels of a network, which they teach more than the reward does: for what no linear law can do."""
 THESIS_PPO = PpoPreset('thesis', THESIS, PpoLearnerSettings(PpoSettings(
     hidden=(64, 64), value_hidden=(64, 64), initial_std=1.0, std_decay=None, learning_rate=3e-4, batch_size=64)))
 """The human's moment is a part of the environment and nothing else (3.3, 3.4); the text gives no settings of PPO, so
@@ -61,3 +66,18 @@ def preset(name: str) -> Preset:
         ValueError: there is none; the message lists the names.
     """
     return load(LEARNERS, name)
+
+
+def preset_for(task: str = '', name: str = '') -> Preset:
+    """The preset called ``name`` for the task called ``task``.
+
+    Args:
+        task: with its default settings; the one that the preset was made for when empty.
+        name: of the preset; the one that the task is learned by when empty, too.
+
+    Raises:
+        ValueError: there is no such task or preset; the message lists the names.
+    """
+    made = load(TASKS, task)() if task else BALANCE
+    found = preset(name or made.preset)
+    return found if not task or task == found.task.name else replace(found, task=made)

@@ -3,10 +3,10 @@
 import argparse
 import json
 import sys
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 
-from shared_control.plugins import LEARNERS, TASKS, WORLDS, load, names
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.run_folder import RunFolder
 from shared_control.teaching.picture import can_teach
 from shared_control.teaching.tutors import TUTOR_NAMES, tutor_named
@@ -16,7 +16,7 @@ from .callbacks import Callbacks
 from .episode import Episode
 from .episode_table import TABLE_NAME
 from .policy_file import POLICY_NAME
-from .presets import Preset, preset
+from .presets import Preset, preset_for
 from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, read_run, train
 
 
@@ -27,8 +27,10 @@ def add_command(commands: argparse._SubParsersAction) -> None:
         description='Teaches a policy headless and as fast as the machine can, with a simulated tutor or none; after '
         'each episode the policy is tested alone. The folder gets policy.safetensors, episodes.csv, run.json and '
         'TensorBoard logs.')
-    parser.add_argument('--preset', choices=names(LEARNERS), default='coached', help='what is learned, and how')
-    parser.add_argument('--task', choices=names(TASKS), help='default: the one that the preset was made for')
+    parser.add_argument('--preset', choices=names(LEARNERS), default='', help='how it is learned (default: as the '
+                        'task is; coached)')
+    parser.add_argument('--task', choices=names(TASKS), default='', help='what is learned (default: what the preset '
+                        'was made for; balance)')
     parser.add_argument('--world', choices=names(WORLDS), default='bullet', help='the physics (default: bullet)')
     parser.add_argument('--tutor', choices=(*TUTOR_NAMES, 'none'), help='simulated tutor (default: expert; none for a '
                         'preset that nobody teaches, and for a task that tutors do not know)')
@@ -49,9 +51,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
-    chosen = preset(args.preset)
-    if args.task:
-        chosen = replace(chosen, task=load(TASKS, args.task)())
+    chosen = preset_for(args.task, args.preset)
     _check_options(args, chosen)
     folder = _claim_folder(args)
     try:
@@ -82,7 +82,7 @@ def _check_options(args: argparse.Namespace, chosen: Preset) -> None:
     if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
         raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
     if not chosen.taught and args.tutor not in (None, 'none'):
-        raise ValueError(f'the preset {args.preset} has no tutor: leave --tutor out, or choose another preset')
+        raise ValueError(f'the preset {chosen.name} has no tutor: leave --tutor out, or choose another preset')
 
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:
@@ -128,5 +128,5 @@ def _tell(result: TrainingRun, tutor: str, args: argparse.Namespace) -> None:
     found = 'was not tested' if not result.tests else (
         f'skilled after {result.skilled} episodes' if result.skilled is not None else
         f'not skilled after {result.episodes} episodes')
-    print(f'{args.preset}, {"nobody" if tutor == "none" else f"simulated {tutor}"} at the keys, seed {args.seed}: '
+    print(f'{result.preset}, {"nobody" if tutor == "none" else f"simulated {tutor}"} at the keys, seed {args.seed}: '
           f'{found}; {result.seconds:.0f} s. {args.output}')

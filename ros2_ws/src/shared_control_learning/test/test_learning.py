@@ -45,7 +45,7 @@ def mean_action(learner, episode):
 
 
 def test_unknown_preset_is_refused_with_the_names_of_all():
-    with pytest.raises(ValueError, match='autonomous, coached, thesis'):
+    with pytest.raises(ValueError, match='autonomous, coached, coached_network, thesis'):
         preset('magic')
 
 

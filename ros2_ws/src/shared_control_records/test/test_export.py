@@ -10,9 +10,11 @@ import pytest
 from shared_control import contract
 from shared_control.cli import main
 from shared_control.robot.spec_file import panda
+from shared_control.tasks.balance import Balance
+from shared_control.tasks.plate import Plate
 from shared_control_records.bag.reader import read_bag
 from shared_control_records.export.frames import episode_frames
-from shared_control_records.export.lerobot import FEATURES, TASK, write_lerobot
+from shared_control_records.export.lerobot import features, write_lerobot
 from shared_control_records.export.parquet import write_parquet
 from shared_control_testing import sessions as made
 
@@ -29,19 +31,24 @@ def bag(lessons, tmp_path_factory):
     return made.record(lessons).write(tmp_path_factory.mktemp('made') / 'bag')
 
 
-@pytest.fixture(scope='module')
-def frames(bag):
-    return episode_frames(read_bag(bag))
+@pytest.fixture(scope='module', params=[Balance, Plate])
+def frames(request, bag):
+    """As of the task of the thesis, and as of one with two axes, of which the first rests."""
+    return episode_frames(read_bag(bag, request.param()))
 
 
 def test_a_frame_a_policy_step_with_who_did_what(frames, lessons):
     assert tuple(map(len, frames)) == STEPS
     for frame, lesson in zip(frames, lessons, strict=True):
         assert (np.diff(frame.stamp_ns) == 20 * made.MS).all()
-        assert frame.agent[:, 0] == pytest.approx(lesson.m_y_agent)
-        assert frame.human[:, 0] == pytest.approx(lesson.m_y_human)
-        assert frame.applied[:, 0] == pytest.approx(lesson.m_y_agent + lesson.m_y_human)
-        assert frame.position_error == pytest.approx(lesson.position_error)
+        assert frame.agent[:, -1] == pytest.approx(lesson.m_y_agent)
+        assert frame.human[:, -1] == pytest.approx(lesson.m_y_human)
+        assert frame.applied[:, -1] == pytest.approx(lesson.m_y_agent + lesson.m_y_human)
+        if len(frame.task.axes) == 1:
+            assert frame.position_error == pytest.approx(lesson.position_error)
+        else:
+            assert frame.position_error == pytest.approx(np.hypot(*frame.on_tray.T))
+            assert not frame.human[:, 0].any() and frame.human.shape == (len(frame), 2)
         assert frame.q == pytest.approx(np.tile(panda().home, (len(frame), 1)))
 
 
@@ -70,6 +77,9 @@ def test_parquet_is_read_back_with_units(frames, tmp_path):
     schema = pq.read_schema(tmp_path / 'session.parquet')
     units = {name: (schema.field(name).metadata or {}).get(b'unit') for name in schema.names}
     assert units['qd7'] == b'rad/s' and units['q1'] == b'rad' and units['m_y_human'] == b'N m'
+    if len(frames[0].task.axes) > 1:
+        assert units['m_x_human'] == b'N m' and units['on_tray_y'] == b'm' and units['ball_vy'] == b'm/s'
+        assert not table.m_x_applied.any()
     assert units['ball_x'] == b'm' and units['ball_vx'] == b'm/s' and units['episode'] is None
 
 
@@ -83,7 +93,7 @@ def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
     assert info['splits'] == {'train': f'0:{len(STEPS)}'}
 
     tasks = pd.read_parquet(root / 'meta/tasks.parquet')
-    assert tasks.index.name == 'task' and tasks.loc[TASK, 'task_index'] == 0
+    assert tasks.index.name == 'task' and tasks.loc[frames[0].task.instruction, 'task_index'] == 0
 
     episodes = pd.read_parquet(root / 'meta/episodes/chunk-000/file-000.parquet')
     assert episodes.length.tolist() == list(STEPS)
@@ -95,11 +105,12 @@ def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
         assert group['index'].tolist() == list(range(episode.dataset_from_index, episode.dataset_to_index))
         assert (group.episode_index == episode.episode_index).all()
         assert group.timestamp.to_numpy() == pytest.approx(np.arange(episode.length) / info['fps'], abs=1e-4)
-        assert episode['stats/action/mean'][0] == pytest.approx(group.action.mean(), abs=1e-5)
+        assert episode['stats/action/mean'][0] == pytest.approx(
+            np.stack(group.action.to_numpy()).reshape(episode.length, -1)[:, 0].mean(), abs=1e-5)
 
     schema = pq.read_schema(root / 'data/chunk-000/file-000.parquet')
     stats = json.loads((root / 'meta/stats.json').read_text())
-    assert schema.names == list(info['features']) == list(stats) == list(FEATURES)
+    assert schema.names == list(info['features']) == list(stats) == list(features(frames[0].task))
     for name, feature in info['features'].items():
         width, = feature['shape']
         kind = schema.field(name).type

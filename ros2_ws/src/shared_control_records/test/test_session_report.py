@@ -10,6 +10,7 @@ from mcap.writer import Writer
 from shared_control.tasks.balance import BALANCE
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import Evaluation
+from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata, report
 from shared_control_records.session.bag_report import write_bag_report
 from shared_control_records.session.episodes import read_episodes
@@ -63,8 +64,8 @@ def test_the_summary_has_the_figures(folder):
     write_report(folder, restarts=1)
     summary = json.loads(folder.summary.read_text())
     assert summary == {
-        'preset': 'coached', 'tutor': 'simulated: expert', 'simulated_tutor': True, 'duration_s': 3.0,
-        'episodes_taught': 3, 'key_presses': 15, 'autonomous_success': 19, 'autonomous_episodes': 20,
+        'task': 'balance', 'preset': 'coached', 'tutor': 'simulated: expert', 'simulated_tutor': True,
+        'duration_s': 3.0, 'episodes_taught': 3, 'key_presses': 15, 'autonomous_success': 19, 'autonomous_episodes': 20,
         'control_rate_hz': pytest.approx(999.0), 'real_time_factor': pytest.approx(0.999),
         'tick_ms': {'p50': 0.61, 'p99': 0.93}, 'late_tick_ratio': 0.01, 'restarts': 1, 'bag_checks': [],
         'bag': str(folder.bag), 'picture': str(folder.picture), 'report': str(folder.report)}
@@ -102,7 +103,7 @@ def test_writing_it_again_keeps_what_only_the_session_knew(folder):
 def test_an_empty_folder_gives_a_report_full_of_gaps(tmp_path):
     folder = SessionFolder.create(tmp_path / 'session')
     summary = write_report(folder).as_dict()
-    assert {name for name, value in summary.items() if value is not None} == {'picture', 'report'}
+    assert {name for name, value in summary.items() if value is not None} == {'task', 'picture', 'report'}
     page = folder.report.read_text()
     assert 'It is not known who taught' in page
     assert 'Not tested' in page
@@ -145,7 +146,7 @@ def annotated(bag, path, content):
             for channel in summary.channels.values()}
         for _, channel, message in reader.iter_messages():
             writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time)
-        writer.add_metadata(bag_metadata.RECORD, content)
+        writer.add_metadata(RECORD, content)
         writer.finish()
 
 

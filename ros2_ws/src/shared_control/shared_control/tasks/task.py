@@ -50,6 +50,10 @@ class Task(ABC):
     reward_names: ClassVar[tuple[str, ...]]
     """The terms that :meth:`reward_terms` may have."""
     observation_size: ClassVar[int]
+    instruction: ClassVar[str] = 'Bring the ball to the centre of the tray and keep it there.'
+    """What is asked of person and robot, a sentence."""
+    preset: ClassVar[str] = 'coached'
+    """How it is learned where nobody names a preset (entry point of the group ``shared_control.learners``)."""
     test_seconds: ClassVar[float] = 10.0
     """Length of an episode of the randomised test, s (4.2)."""
 
@@ -82,6 +86,10 @@ class Task(ABC):
     @abstractmethod
     def describe(self, state: PlantState, model: RobotModel) -> Any:
         """What the task looks at, a :class:`TaskState`."""
+
+    def on_tray(self, state: Any) -> tuple[float, float] | None:
+        """Where the ball is, in the tray's frame, m, for tracks seen from above; None unless a task overrides this."""
+        return None
 
     @abstractmethod
     def observe(self, state: Any) -> np.ndarray:

@@ -13,7 +13,7 @@ class TutorProfile:
     reaction_time: float = 0.25
     """From the world to the picture that a decision rests on, s. Visual reaction times of practised people."""
     key_rate: float = 5.0
-    """Most key presses a second, 1/s."""
+    """Most key presses a second, of the keys of one axis: each has a finger of its own, 1/s."""
     position_noise: float = 0.004
     """Standard deviation of the position as seen, m."""
     velocity_noise: float = 0.010

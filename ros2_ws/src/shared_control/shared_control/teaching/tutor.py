@@ -42,7 +42,7 @@ class _Memory:
 
 
 class SimulatedTutor(SimulatedPerson):
-    """Sees late and inexactly, thinks ahead, and presses one key at a time, no faster than a hand can.
+    """Sees late and inexactly, thinks ahead, and presses one key at a time, each axis no faster than a finger can.
 
     What the tutor sees is ``reaction_time`` old and has an error. The tutor knows which keys were pressed since, and
     so what they are about to do. About each axis, a spring and a damper make the tilt that would bring the ball where
@@ -73,7 +73,7 @@ class SimulatedTutor(SimulatedPerson):
         self._error = np.zeros((3, axes))
         self._trust = np.zeros(axes)
         self._wearing = np.zeros(axes)
-        self._may_press_at = 0.0
+        self._may_press_at = np.zeros(axes)
 
     def key(self, seconds: float, picture: Picture, held: np.ndarray) -> Key | None:
         """See :class:`SimulatedPerson`."""
@@ -86,11 +86,16 @@ class SimulatedTutor(SimulatedPerson):
         if seen.seconds > latest:
             return None
         wanted = self._wanted(seen, seconds - seen.seconds, elapsed, held)
-        if seconds < self._may_press_at:
+        resting = seconds < self._may_press_at
+        if resting.all():
             return None
-        key = key_towards(wanted, held, self._task.keys) if self.profile.watches else self._any_key()
+        if self.profile.watches:
+            key = key_towards(np.where(resting, held, wanted), held, self._task.keys)
+        else:
+            key = self._any_key()
         if key is not None:
-            self._may_press_at = seconds + 1.0 / self.profile.key_rate - ROUNDING
+            moved = slice(None) if key is Key.SPACE else self._task.keys[key][0]
+            self._may_press_at[moved] = seconds + 1.0 / self.profile.key_rate - ROUNDING
         return key
 
     def _any_key(self) -> Key | None:

@@ -28,7 +28,7 @@ class PushedPlant(LocalPlant):
 
     def __init__(self, task: Task, force: tuple[float, float, float]):
         super().__init__(task)
-        self._centre = np.array(task.scene.home)
+        self._goal = np.array(task.scene.home) + [*task.scene.goal, 0.0]
         self._force = np.array(force)
 
     def reset(self, seed: int | None = None) -> PlantState:
@@ -37,8 +37,8 @@ class PushedPlant(LocalPlant):
         return super().reset(seed)
 
     def ball_start(self) -> np.ndarray:
-        """The tray's centre."""
-        return self._centre
+        """The goal: the tray's centre, or where else the task has it."""
+        return self._goal
 
     def advance(self, agent: np.ndarray) -> PlantState:
         """See :class:`LocalPlant`."""

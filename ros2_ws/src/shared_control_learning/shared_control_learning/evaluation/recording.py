@@ -21,6 +21,7 @@ class RecordingEnv(SharedControlEnv):
         self._robot = RobotModel(plant.spec)
         self._episodes: list[list[tuple[float, ...]]] = []
         self._fallen: list[bool] = []
+        self._is_signed = len(task.axes) == 1
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None,
               ) -> tuple[np.ndarray, dict[str, Any]]:
@@ -35,12 +36,16 @@ class RecordingEnv(SharedControlEnv):
         info = result[-1]
         state = info['state']
         q, qd = self._world.joint_state()
-        tray_velocity = float(self._robot.jacobian(q)[0] @ qd)
         self._episodes[-1].append((
-            state.position_error, state.velocity, tray_velocity - state.velocity, float(info['agent'][0]),
-            state.manipulability))
+            state.position_error, state.velocity, self._velocity_error(self._robot.jacobian(q) @ qd, state.velocity),
+            float(info['agent'][0]) if self._is_signed else float(np.linalg.norm(info['agent'])), state.manipulability))
         self._fallen[-1] = info['failed']
         return result
+
+    def _velocity_error(self, tray: np.ndarray, ball: float) -> float:
+        if self._is_signed:
+            return float(tray[0]) - ball
+        return float(np.linalg.norm(tray[:2] - self._world.ball_state()[2][:2]))
 
     def result(self, test: str) -> ProtocolResult:
         """All episodes so far, as the result of ``test``."""

@@ -20,7 +20,8 @@ class ProtocolResult:
     seconds: np.ndarray
     """Time in the episode, (steps,), s: the end of each policy period."""
     position_error: np.ndarray
-    """Tray centre minus ball along base x, (episodes, steps), m"""
+    """Tray centre minus ball along base x, (episodes, steps), m. This and the next three are magnitudes for a task
+    with two axes: distance from the goal, speeds, moment."""
     velocity: np.ndarray
     """Velocity of the ball along base x, (episodes, steps), m/s: what the policy sees."""
     velocity_error: np.ndarray

@@ -25,7 +25,7 @@ class DrivenPlant(LocalPlant):
 
     def __init__(self, task: Task, frequency: float):
         super().__init__(task)
-        self._centre = np.array(task.scene.home)
+        self._goal = np.array(task.scene.home) + [*task.scene.goal, 0.0]
         self._reference = cosine_reference(RobotModel(self.spec), frequency, SECONDS, CONTROL_PERIOD)
 
     def reset(self, seed: int | None = None) -> PlantState:
@@ -34,8 +34,8 @@ class DrivenPlant(LocalPlant):
         return super().reset(seed)
 
     def ball_start(self) -> np.ndarray:
-        """The tray's centre."""
-        return self._centre
+        """The goal: the tray's centre, or where else the task has it."""
+        return self._goal
 
     def tick(self, moment: np.ndarray) -> None:
         """See :class:`LocalPlant`."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from shared_control import contract
+from shared_control.plant import PlantState
 from shared_control.robot.model import RobotModel
 
 from .reader import Bag
@@ -23,7 +24,11 @@ class EpisodeTrack:
     seconds: np.ndarray
     """(n,), since the start"""
     position_error: np.ndarray
-    """(n,), tray centre - ball along base x, m"""
+    """(n,), m, as the task has it: signed along its one axis, a distance with two"""
+    on_tray: np.ndarray
+    """(n, 2), where the ball was on the tray, in the tray's frame, m"""
+    failed: bool
+    """Whether the task failed (the ball fell)."""
 
     @property
     def end_ns(self) -> int:
@@ -34,38 +39,42 @@ class EpisodeTrack:
 def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
     """The finished episodes of a bag in their order. One that was broken off, and began again, is left out."""
     starts, ends = bag.training[contract.EPISODE], bag.training[contract.EPISODE_RETURN]
-    error = _position_error(bag)
+    model = RobotModel()
     tracks = []
     for index, (start_ns, number) in enumerate(zip(starts.received_ns, starts.values, strict=True)):
         next_ns = starts.received_ns[index + 1] if index + 1 < len(starts.received_ns) else bag.end_ns
         ended = ends.received_ns[(ends.received_ns > start_ns) & (ends.received_ns <= next_ns)]
-        if not len(ended):
+        if not len(ended) or not len(bag.joint_states.stamp_ns):
             continue
         first, last = np.searchsorted(bag.ball.received_ns, (start_ns, ended[0]))
-        first = _after_drop(bag.ball.position[first:last, 0]) + first
+        first = _after_drop(bag.ball.position[first:last]) + first
         if last - first < 2:
             continue
         stamps = bag.ball.stamp_ns[first:last]
         tracks.append(EpisodeTrack(
             int(number), _phase(bag, int((start_ns + ended[0]) / 2)), int(stamps[0]),
-            (stamps - stamps[0]) * 1e-9, error[first:last]))
+            (stamps - stamps[0]) * 1e-9, *_seen(bag, slice(first, last), model)))
     return tracks
 
 
-def _position_error(bag: Bag) -> np.ndarray:
-    """Tray centre - ball along base x at every sample of /ball, m."""
-    joints, ball = bag.joint_states, bag.ball
-    if not len(joints.stamp_ns) or not len(ball.stamp_ns):
-        return np.empty(len(ball.stamp_ns))
-    model = RobotModel()
-    index = np.searchsorted(joints.received_ns, ball.received_ns).clip(max=len(joints.received_ns) - 1)
-    tray_x = np.array([model.tray_pose(q)[0][0] for q in joints.q[index]])
-    return tray_x - ball.position[:, 0]
+def _seen(bag: Bag, samples: slice, model: RobotModel) -> tuple[np.ndarray, np.ndarray, bool]:
+    """At some samples of /ball: position errors, (n,), m; the ball on the tray, (n, 2), m; whether the task failed."""
+    joints, ball, task = bag.joint_states, bag.ball, bag.task
+    index = np.searchsorted(joints.received_ns, ball.received_ns[samples]).clip(max=len(joints.received_ns) - 1)
+    none = np.zeros(len(task.axes))
+    errors, on_tray, failed = [], [], False
+    for q, position, velocity in zip(joints.q[index], ball.position[samples], ball.velocity[samples], strict=True):
+        state = task.describe(PlantState(q, tuple(position), tuple(velocity), none, none, none), model)
+        origin, rotation = model.tray_pose(q)
+        errors.append(state.position_error)
+        on_tray.append(rotation.T[:2] @ (position - origin))
+        failed = failed or task.failed(state)
+    return np.array(errors), np.array(on_tray), failed
 
 
-def _after_drop(x: np.ndarray) -> int:
-    """The episode is announced about when the ball is dropped: index of the first sample after that."""
-    jumps = np.flatnonzero(np.abs(np.diff(x[:50])) > _JUMP)
+def _after_drop(positions: np.ndarray) -> int:
+    """The episode is announced about when the ball is dropped: index of the first of ``positions`` after that."""
+    jumps = np.flatnonzero(np.abs(np.diff(positions[:50, :2], axis=0)).max(axis=1) > _JUMP)
     return int(jumps[-1]) + 1 if len(jumps) else 0
 
 

@@ -9,6 +9,10 @@ from typing import IO
 _NUMBER = re.compile(r'_(\d+)\.mcap$')
 
 
+class BagReadError(OSError):
+    """A bag cannot be read; the message names it and says why."""
+
+
 class BagError(OSError):
     """A bag cannot be written or read; the message names the file and the reason."""
 

@@ -14,10 +14,12 @@ from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
-from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 
 from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
+from .files import BagReadError
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
+from .task import recorded_task
 
 _WRENCHES = (
     contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
@@ -25,15 +27,13 @@ _WRENCHES = (
 _SMALLEST_WRENCH = 64
 
 
-class BagReadError(OSError):
-    """A bag cannot be read; the message names it and says why."""
-
-
 @dataclass(frozen=True, eq=False)
 class Bag:
     """A session's bag."""
 
     path: Path
+    task: Task
+    """What was learned."""
     start_ns: int
     """When the first message was received."""
     end_ns: int
@@ -62,11 +62,11 @@ class Bag:
     """Reports on /diagnostics, by the name of the node."""
 
 
-def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes, robot: RobotSpec | None = None) -> Bag:
+def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = None) -> Bag:
     """Read a bag of ``robot`` (the Panda when not given): a rosbag2 folder or a single MCAP file.
 
     Args:
-        axes: of the task, along which moments are taken from wrenches.
+        task: along whose axes moments are taken from wrenches; the one that the bag was recorded of when not given.
 
     Raises:
         BagReadError: there is none, or it was not finished, or it is damaged.
@@ -77,8 +77,9 @@ def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes, robot: RobotSpec 
     if not path.exists():
         raise BagReadError(f'there is no bag {path}')
     try:
+        task = recorded_task(path) if task is None else task
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
-            collector = _Collector(reader, axes, panda() if robot is None else robot)
+            collector = _Collector(reader, task, panda() if robot is None else robot)
             for connection, received_ns, raw in reader.messages():
                 collector.add(connection, received_ns, raw)
             return collector.finish(path)
@@ -89,8 +90,8 @@ def read_bag(path: Path, axes: tuple[int, ...] = BALANCE.axes, robot: RobotSpec 
 class _Collector:
     """Sorts the messages of a bag by topic, decoding them."""
 
-    def __init__(self, reader: AnyReader, axes: tuple[int, ...], robot: RobotSpec):
-        self._reader, self._axes, self._robot = reader, axes, robot
+    def __init__(self, reader: AnyReader, task: Task, robot: RobotSpec):
+        self._reader, self._task, self._robot = reader, task, robot
         self._counts = Counter({connection.topic: 0 for connection in reader.connections})
         self._unusable: Counter[str] = Counter()
         self._bulk = {
@@ -137,7 +138,7 @@ class _Collector:
         """Everything as arrays."""
         start_ns, end_ns = self._times or (0, 0)
         return Bag(
-            path=path, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
+            path=path, task=self._task, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
             joint_states=JointStates(*self._bulk_columns(
                 contract.JOINT_STATES, _no_stamps(), *(np.empty((0, self._robot.dof)) for _ in range(3)))),
             commands=Commands(*self._bulk_columns(contract.EFFORT_COMMANDS, np.empty((0, self._robot.dof)))),
@@ -166,7 +167,7 @@ class _Collector:
     def _wrenches(self, topic: Topic) -> Wrenches:
         received_ns, stamp_ns, force, torque = self._bulk_columns(
             topic, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))
-        return Wrenches(received_ns, stamp_ns, np.hstack((force, torque))[:, self._axes])
+        return Wrenches(received_ns, stamp_ns, np.hstack((force, torque))[:, self._task.axes])
 
     def _joint_state(self, raw: bytes) -> Row | None:
         message = self._message(raw, contract.JOINT_STATES.type)

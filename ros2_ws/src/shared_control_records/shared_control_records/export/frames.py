@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from shared_control import contract
+from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import RobotModel, pitch
+from shared_control.tasks.task import Task
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
@@ -21,6 +23,7 @@ class EpisodeFrames:
     and what came of it.
     """
 
+    task: Task
     number: int
     phase: str
     """``teach`` or ``test``"""
@@ -35,9 +38,13 @@ class EpisodeFrames:
     ball_velocity: np.ndarray
     """(n, 3), m/s"""
     position_error: np.ndarray
-    """(n,), tray centre - ball along base x, m"""
+    """(n,), m, as the task has it: signed along its one axis, a distance with two"""
     pitch: np.ndarray
-    """(n,), of the tray, rad"""
+    """(n,), of the tray about base y, rad"""
+    on_tray: np.ndarray
+    """(n, 2), the ball in the tray's frame, m"""
+    lean: np.ndarray
+    """(n, 2), sines of the tray's tilt along base x and base y"""
     agent: np.ndarray
     """The agent's moment as it counted, (n, k), N m"""
     human: np.ndarray
@@ -74,12 +81,21 @@ def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
     joints, ball = _newest(bag.joint_states.stamp_ns, begin), _newest(bag.ball.stamp_ns, begin)
     q, position = bag.joint_states.q[joints], bag.ball.position[ball]
     model = RobotModel()
-    poses = [(tray[0], pitch(rotation)) for tray, rotation in map(model.tray_pose, q)]
-    tray_x, tilt = np.array(poses, float).reshape(-1, 2).T
+    velocity = bag.ball.velocity[ball]
+    seen = np.array([_seen(bag.task, model, *row) for row in zip(q, position, velocity, strict=True)], float)
+    seen = seen.reshape(-1, 6)
     return EpisodeFrames(
-        track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, bag.ball.velocity[ball],
-        tray_x - position[:, 0], tilt, bag.agent_applied.moment_at(end),
+        bag.task, track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, velocity,
+        seen[:, 0], seen[:, 1], seen[:, 2:4], seen[:, 4:], bag.agent_applied.moment_at(end),
         bag.human_applied.moment_at(end), bag.applied.moment_at(end))
+
+
+def _seen(task: Task, model: RobotModel, q: np.ndarray, ball: np.ndarray, velocity: np.ndarray) -> list[float]:
+    """Position error, pitch, the ball on the tray and the lean at one moment."""
+    none = np.zeros(len(task.axes))
+    state = task.describe(PlantState(q, tuple(ball), tuple(velocity), none, none, none), model)
+    origin, rotation = model.tray_pose(q)
+    return [state.position_error, pitch(rotation), *rotation.T[:2] @ (ball - origin), *rotation[:2, 2]]
 
 
 def _newest(stamps_ns: np.ndarray, at_ns: np.ndarray) -> np.ndarray:

@@ -20,35 +20,40 @@ import pyarrow.parquet as pq
 from shared_control.files import write_atomically
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.spec_file import panda
-from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
 
 from .frames import EpisodeFrames
 
 VERSION = 'v3.0'
-TASK = 'Bring the ball to the centre of the tray and keep it there.'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
+_ONE_AXIS = ('ball_velocity', 'tray_pitch')
+_TWO_AXES = ('ball_on_tray_x', 'ball_on_tray_y', 'ball_velocity_x', 'ball_velocity_y', 'tray_lean_x', 'tray_lean_y')
+"""What the state has of ball and tray beside the position error."""
 
-def _moments(who: str) -> list[str]:
-    return [f'{AXIS_NAMES[row]}_{who}' for row in BALANCE.axes]
 
+def features(task: Task) -> dict[str, dict[str, Any]]:
+    """The features of a data set of ``task``, SI units, moments along its axes.
 
-FEATURES: dict[str, dict[str, Any]] = {
-    'observation.state': {'dtype': 'float32', 'names': [
-        *panda().joints, *(f'{name}_velocity' for name in panda().joints), 'position_error', 'ball_velocity',
-        'tray_pitch']},
-    'action': {'dtype': 'float32', 'names': _moments('applied')},
-    'complementary_info.action_agent': {'dtype': 'float32', 'names': _moments('agent')},
-    'complementary_info.action_human': {'dtype': 'float32', 'names': _moments('human')},
-    'timestamp': {'dtype': 'float32', 'names': None},
-    'frame_index': {'dtype': 'int64', 'names': None},
-    'episode_index': {'dtype': 'int64', 'names': None},
-    'index': {'dtype': 'int64', 'names': None},
-    'task_index': {'dtype': 'int64', 'names': None},
-}
-"""SI units. ``action`` is what moved the robot. What agent and human added to it stand beside it under a prefix that
-LeRobot's policies do not take for a further action to be learned."""
+    ``action`` is what moved the robot. What agent and human added to it stand beside it under a prefix that LeRobot's
+    policies do not take for a further action to be learned.
+    """
+    moments = {who: [f'{AXIS_NAMES[row]}_{who}' for row in task.axes] for who in ('applied', 'agent', 'human')}
+    joints = panda().joints
+    return {
+        'observation.state': {'dtype': 'float32', 'names': [
+            *joints, *(f'{name}_velocity' for name in joints), 'position_error',
+            *(_ONE_AXIS if len(task.axes) == 1 else _TWO_AXES)]},
+        'action': {'dtype': 'float32', 'names': moments['applied']},
+        'complementary_info.action_agent': {'dtype': 'float32', 'names': moments['agent']},
+        'complementary_info.action_human': {'dtype': 'float32', 'names': moments['human']},
+        'timestamp': {'dtype': 'float32', 'names': None},
+        'frame_index': {'dtype': 'int64', 'names': None},
+        'episode_index': {'dtype': 'int64', 'names': None},
+        'index': {'dtype': 'int64', 'names': None},
+        'task_index': {'dtype': 'int64', 'names': None},
+    }
 
 
 def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
@@ -65,20 +70,23 @@ def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
     starts = np.cumsum([0, *map(len, episodes)]).tolist()
     columns = [_columns(episode, index, start) for index, (episode, start) in
                enumerate(zip(episodes, starts[:-1], strict=True))]
-    with pq.ParquetWriter(data, _schema(), compression='snappy') as writer:
+    task = episodes[0].task
+    schema = _schema(task)
+    with pq.ParquetWriter(data, schema, compression='snappy') as writer:
         for episode in columns:
-            writer.write_table(pa.Table.from_arrays([_array(episode[name]) for name in FEATURES], schema=_schema()))
-    rows = [{'episode_index': index, 'tasks': [TASK], 'length': len(episodes[index]),
+            writer.write_table(pa.Table.from_arrays([_array(values) for values in episode.values()], schema=schema))
+    rows = [{'episode_index': index, 'tasks': [task.instruction], 'length': len(episodes[index]),
              'data/chunk_index': 0, 'data/file_index': 0,
              'dataset_from_index': starts[index], 'dataset_to_index': starts[index + 1],
              **{f'stats/{feature}/{name}': value for feature, values in _stats(episode).items()
                 for name, value in values.items()},
              'meta/episodes/chunk_index': 0, 'meta/episodes/file_index': 0} for index, episode in enumerate(columns)]
     pq.write_table(pa.Table.from_pylist(rows), episodes_path)
-    pd.DataFrame({'task_index': [0]}, index=pd.Index([TASK], name='task')).to_parquet(folder / 'meta' / 'tasks.parquet')
-    whole = {name: np.concatenate([episode[name] for episode in columns]) for name in FEATURES}
+    sentences = pd.Index([task.instruction], name='task')
+    pd.DataFrame({'task_index': [0]}, index=sentences).to_parquet(folder / 'meta' / 'tasks.parquet')
+    whole = {name: np.concatenate([episode[name] for episode in columns]) for name in columns[0]}
     _write_json(folder / 'meta' / 'stats.json', _stats(whole))
-    _write_json(folder / 'meta' / 'info.json', _info(len(episodes), starts[-1]))  # last: a reader begins with it
+    _write_json(folder / 'meta' / 'info.json', _info(task, len(episodes), starts[-1]))  # last: a reader begins with it
 
 
 def _first_file() -> str:
@@ -88,23 +96,24 @@ def _first_file() -> str:
 def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.ndarray]:
     """The features of an episode, each (n, width) in its type."""
     count = len(episode)
-    state = np.column_stack([episode.q, episode.qd, episode.position_error, episode.ball_velocity[:, 0],
-                             episode.pitch])
+    seen = ([episode.ball_velocity[:, 0], episode.pitch] if len(episode.task.axes) == 1 else
+            [episode.on_tray, episode.ball_velocity[:, :2], episode.lean])
+    state = np.column_stack([episode.q, episode.qd, episode.position_error, *seen])
     frames = np.arange(count)
     values = (state, episode.applied, episode.agent, episode.human, frames * POLICY_PERIOD, frames,
               np.full(count, index), frames + start, np.zeros(count))
     return {name: value.reshape(count, -1).astype(feature['dtype'])
-            for (name, feature), value in zip(FEATURES.items(), values, strict=True)}
+            for (name, feature), value in zip(features(episode.task).items(), values, strict=True)}
 
 
 def _shape(feature: dict[str, Any]) -> list[int]:
     return [len(feature['names']) if feature['names'] else 1]
 
 
-def _schema() -> pa.Schema:
+def _schema(task: Task) -> pa.Schema:
     """A feature of one number is a column of numbers, a wider one a column of lists of fixed length."""
     fields = []
-    for name, feature in FEATURES.items():
+    for name, feature in features(task).items():
         kind, (width,) = pa.type_for_alias(feature['dtype']), _shape(feature)
         fields.append(pa.field(name, kind if width == 1 else pa.list_(kind, width)))
     return pa.schema(fields)
@@ -125,14 +134,14 @@ def _stats(columns: dict[str, np.ndarray]) -> dict[str, dict[str, list]]:
     } for name, values in columns.items()}
 
 
-def _info(episodes: int, frames: int) -> dict[str, Any]:
+def _info(task: Task, episodes: int, frames: int) -> dict[str, Any]:
     return {
         'codebase_version': VERSION, 'robot_type': 'panda', 'fps': round(1 / POLICY_PERIOD),
         'total_episodes': episodes, 'total_frames': frames, 'total_tasks': 1, 'splits': {'train': f'0:{episodes}'},
         'chunks_size': 1000, 'data_files_size_in_mb': 100, 'video_files_size_in_mb': 200,
         'data_path': f'data/{FILE}.parquet', 'video_path': None,
         'features': {name: {'dtype': feature['dtype'], 'shape': _shape(feature), 'names': feature['names']}
-                     for name, feature in FEATURES.items()}}
+                     for name, feature in features(task).items()}}
 
 
 def _write_json(path: Path, content: dict[str, Any]) -> None:

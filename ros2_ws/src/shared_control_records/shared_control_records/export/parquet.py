@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from shared_control.tasks.balance import BALANCE
 from shared_control.wrench import AXIS_NAMES
 
 from .frames import EpisodeFrames
 
 UNITS = {'seconds': 's', 'stamp_ns': 'ns', 'q': 'rad', 'qd': 'rad/s', 'ball': 'm', 'ball_v': 'm/s',
-         'position_error': 'm', 'pitch': 'rad', **dict.fromkeys(AXIS_NAMES[3:], 'N m')}
+         'position_error': 'm', 'pitch': 'rad', 'on_tray': 'm', **dict.fromkeys(AXIS_NAMES[3:], 'N m')}
 """By the beginning of a column's name; the longest that fits counts."""
 
 
@@ -32,9 +31,11 @@ def _table(episode: EpisodeFrames) -> pa.Table:
         **{f'ball_{axis}': episode.ball_position[:, index] for index, axis in enumerate('xyz')},
         **{f'ball_v{axis}': episode.ball_velocity[:, index] for index, axis in enumerate('xyz')},
         'position_error': episode.position_error, 'pitch': episode.pitch,
+        **{f'on_tray_{axis}': episode.on_tray[:, index] for index, axis in enumerate('xy')},
+        **{f'lean_{axis}': episode.lean[:, index] for index, axis in enumerate('xy')},
         **{f'{AXIS_NAMES[row]}_{who}': moments[:, axis] for who, moments in (
             ('agent', episode.agent), ('human', episode.human), ('applied', episode.applied))
-           for axis, row in enumerate(BALANCE.axes)}}
+           for axis, row in enumerate(episode.task.axes)}}
     arrays = [pa.array(column) for column in columns.values()]
     return pa.Table.from_arrays(arrays, schema=pa.schema(
         [pa.field(name, array.type, metadata=_unit(name)) for name, array in zip(columns, arrays, strict=True)]))

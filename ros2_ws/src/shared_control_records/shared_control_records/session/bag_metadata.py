@@ -7,19 +7,15 @@ A session puts it behind the messages as a metadata record of the MCAP file
 import json
 from pathlib import Path
 
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
 from shared_control import contract
 from shared_control.files import write_atomically
-from shared_control.tasks.balance import BALANCE
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
-from ..bag.reader import Bag, BagReadError
+from ..bag.reader import Bag
+from ..bag.task import session_record
 from .episodes import EpisodeRow, write_episodes
 from .folder import SessionFolder
 
-RECORD = 'shared_control_session'
-"""Name of the metadata record; its keys are paths within the folder, its values the files' text."""
 TUTOR_OF_KEYS = {'tutor': 'simulated: unknown', 'terminal': 'keyboard', 'page': 'keyboard'}
 """Who taught, by the source of the keys in a bag that does not say it."""
 
@@ -35,7 +31,7 @@ def unpack(bag: Bag, folder: SessionFolder) -> None:
 
     Files that are not a session's are left in the bag.
     """
-    packed = _read(bag.path)
+    packed = session_record(bag.path)
     for path in (*_files(folder), folder.summary):
         if _key(folder, path) in packed:
             write_atomically(path, packed[_key(folder, path)].encode())
@@ -49,16 +45,14 @@ def unpack(bag: Bag, folder: SessionFolder) -> None:
 
 def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:
     """An episode as the topics tell it."""
-    first, last = bag.ball.stamp_ns.searchsorted((track.start_ns, track.end_ns))
-    until_ns = bag.ball.received_ns[last]
+    until_ns = bag.ball.received_ns[bag.ball.stamp_ns.searchsorted(track.end_ns)]
     returns, shares = bag.training[contract.EPISODE_RETURN], bag.training[contract.HUMAN_SHARE]
     ended = returns.received_ns.searchsorted(until_ns)
     shared = shares.received_ns.searchsorted(until_ns) - 1
     return EpisodeRow(
         number=track.number, phase=track.phase, seconds=float(track.seconds[-1]),
         episode_return=float(returns.values[ended]) if ended < len(returns.values) else None,
-        fallen=bool((bag.ball.position[first:last + 1, 2] < BALANCE.fallen_below).any()),
-        human_share=float(shares.values[shared]) if shared >= 0 else None)
+        fallen=track.failed, human_share=float(shares.values[shared]) if shared >= 0 else None)
 
 
 def _files(folder: SessionFolder) -> tuple[Path, ...]:
@@ -67,16 +61,3 @@ def _files(folder: SessionFolder) -> tuple[Path, ...]:
 
 def _key(folder: SessionFolder, path: Path) -> str:
     return path.relative_to(folder.path).as_posix()
-
-
-def _read(bag: Path) -> dict[str, str]:
-    """The record of the last file that has one; empty when none has."""
-    found: dict[str, str] = {}
-    for path in sorted(bag.glob('*.mcap'), key=lambda file: (len(file.name), file.name)) if bag.is_dir() else [bag]:
-        try:
-            with path.open('rb') as file:
-                found = next((record.metadata for record in make_reader(file).iter_metadata()
-                              if record.name == RECORD), found)
-        except (McapError, OSError, ValueError) as error:
-            raise BagReadError(f'cannot read {path}: {error or type(error).__name__}') from error
-    return found

@@ -34,6 +34,8 @@ class TestedEpisode:
     """Position error at the start, m"""
     track: tuple[float, ...] = ()
     """Position error, m, every ``sample_period``"""
+    path: tuple[tuple[float, float], ...] = ()
+    """Where the ball was on the tray, m, likewise; empty for a task with one axis."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,10 @@ _FINAL_TEST = TypeAdapter(FinalTest)
 
 def save_test(evaluation: Evaluation, path: Path) -> FinalTest:
     """Keep an evaluation in ``path``."""
-    test = FinalTest(tuple(_tested(episode) for episode in evaluation.episodes))
+    task = evaluation.episodes[0].task
+    test = FinalTest(
+        tuple(_tested(episode) for episode in evaluation.episodes), task.scene.goal_radius,
+        getattr(task, 'velocity_max', FinalTest.velocity_max))
     content = {'successes': test.successes, **asdict(test)}
     write_atomically(path, json.dumps(content, indent=1).encode())
     return test
@@ -83,4 +88,5 @@ def _tested(episode: Episode) -> TestedEpisode:
     track = tuple(round(float(error), 5) for error in episode.position_error[::STEPS_PER_SAMPLE])
     return TestedEpisode(
         success=episode.success, kept=not episode.failed, position_error=settled(np.array(episode.position_error)),
-        velocity=settled(np.array(episode.velocity)), ball_start=float(episode.position_error[0]), track=track)
+        velocity=settled(np.array(episode.velocity)), ball_start=float(episode.position_error[0]), track=track,
+        path=tuple((round(x, 5), round(y, 5)) for x, y in episode.on_tray[::STEPS_PER_SAMPLE]))

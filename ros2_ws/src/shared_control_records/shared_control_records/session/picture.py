@@ -8,17 +8,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import Normalize, to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 from shared_control.rates import POLICY_PERIOD
+from shared_control.tasks.task import Task
+from shared_control.wrench import AXIS_NAMES
 
 from ..bag.ball_tracks import EpisodeTrack
 from ..bag.reader import Bag
 from ..plotting.style import AGENT, BAD, FAINT, GOOD, HUMAN, SEQUENCE, STYLE, cross, say_empty
 from .episodes import EpisodeRow
 from .final_test import FinalTest
+from .from_above import draw_track, draw_tray
 
 ERROR_SHOWN = 25.0
 """cm; the tray's ends are 20 cm from its centre."""
@@ -29,7 +32,7 @@ MOMENT_BINS = 1500
 
 
 def draw_picture(path: Path, title: str, bag: Bag | None, tracks: Sequence[EpisodeTrack],
-                 rows: Sequence[EpisodeRow], test: FinalTest | None) -> None:
+                 rows: Sequence[EpisodeRow], test: FinalTest | None, task: Task) -> None:
     """Draw what there is of a session; a plot without data says so.
 
     Args:
@@ -37,6 +40,7 @@ def draw_picture(path: Path, title: str, bag: Bag | None, tracks: Sequence[Episo
         title: who taught whom.
         tracks: finished episodes; taught ones are drawn.
         rows: table of episodes; taught ones are drawn.
+        task: what was learned; with two axes tracks are drawn from above.
     """
     taught = [track for track in tracks if track.phase == 'teach']
     rows = [row for row in rows if row.phase == 'teach']
@@ -46,9 +50,15 @@ def draw_picture(path: Path, title: str, bag: Bag | None, tracks: Sequence[Episo
         FigureCanvasAgg(figure)
         figure.suptitle(title, x=0.01, ha='left', fontsize=15, fontweight='bold')
         grid = figure.add_gridspec(4, 6, height_ratios=(3.2, 1.15, 1.15, 2.2))
-        lessons = figure.add_subplot(grid[0, :3])
-        _draw_lessons(lessons, taught, {row.number for row in rows if row.fallen})
-        _draw_test_tracks(figure.add_subplot(grid[0, 3:], sharey=lessons), test)
+        lessons, alone = figure.add_subplot(grid[0, :3]), figure.add_subplot(grid[0, 3:])
+        fallen = {row.number for row in rows if row.fallen}
+        if len(task.axes) == 1:
+            alone.sharey(lessons)
+            _draw_lessons(lessons, taught, fallen)
+            _draw_test_tracks(alone, test)
+        else:
+            _draw_lessons_from_above(lessons, task, taught, fallen)
+            _draw_test_from_above(alone, task, test)
         human = figure.add_subplot(grid[1, :])
         agent = figure.add_subplot(grid[2, :], sharex=human, sharey=human)
         _draw_moments(human, agent, bag, taught)
@@ -77,10 +87,7 @@ def _draw_lessons(axes: Axes, taught: list[EpisodeTrack], fallen: set[int]) -> N
     if fallen:
         axes.legend(handles=[cross(FAINT, 'the ball fell')], loc='lower right')
     if len(taught) > 1:
-        scale = ScalarMappable(colours, SEQUENCE.reversed())
-        bar = axes.figure.colorbar(scale, ax=axes, pad=0.02, aspect=30, label='Episode (early to late)')
-        bar.ax.yaxis.set_major_locator(MaxNLocator(integer=True))
-        bar.outline.set_visible(False)  # type: ignore[operator]
+        _draw_scale(axes, colours)
 
 
 def _draw_test_tracks(axes: Axes, test: FinalTest | None) -> None:
@@ -103,6 +110,41 @@ def _draw_test_tracks(axes: Axes, test: FinalTest | None) -> None:
         axes.legend(handles=[cross(BAD, 'the ball fell')], loc='lower right')
 
 
+def _draw_lessons_from_above(axes: Axes, task: Task, taught: list[EpisodeTrack], fallen: set[int]) -> None:
+    axes.set_title('Taught: the ball in each episode, from above')
+    if not taught:
+        say_empty(axes, 'no finished episode in the bag')
+        return
+    draw_tray(axes, task.scene)
+    numbers = [track.number for track in taught]
+    colours = Normalize(min(numbers), max(max(numbers), min(numbers) + 1))
+    for index, track in enumerate(taught):
+        stands_out = len(taught) <= 2 * ENDS_SHOWN or not ENDS_SHOWN <= index < len(taught) - ENDS_SHOWN
+        draw_track(axes, task.scene, track.on_tray, SEQUENCE(0.92 * (1.0 - colours(track.number))),
+                   0.9 if stands_out else 0.15, track.number in fallen)
+    if len(taught) > 1:
+        _draw_scale(axes, colours)
+
+
+def _draw_test_from_above(axes: Axes, task: Task, test: FinalTest | None) -> None:
+    axes.set_title('Alone: the final test, from above')
+    tracks = [episode for episode in test.episodes if episode.path] if test else []
+    if test is None or not tracks:
+        say_empty(axes, 'not tested' if test is None else 'no tracks were kept; results below')
+        return
+    axes.set_title(f'Alone: {test.successes} of {len(test.episodes)} tests succeed')
+    draw_tray(axes, task.scene)
+    for episode in tracks:
+        draw_track(axes, task.scene, np.array(episode.path), GOOD if episode.success else BAD, 0.75, not episode.kept)
+
+
+def _draw_scale(axes: Axes, colours: Normalize) -> None:
+    bar = axes.figure.colorbar(ScalarMappable(colours, SEQUENCE.reversed()), ax=axes, pad=0.02, aspect=30,
+                               label='Episode (early to late)')
+    bar.ax.yaxis.set_major_locator(MaxNLocator(integer=True))
+    bar.outline.set_visible(False)  # type: ignore[operator]
+
+
 def _draw_centre(axes: Axes) -> None:
     axes.axhspan(-2, 2, color=GOOD, alpha=0.12, linewidth=0)
     axes.annotate('centre ± 2 cm', (0.995, -2), xycoords=('axes fraction', 'data'), xytext=(0, -3),
@@ -120,19 +162,20 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
     start, end = taught[0].start_ns, taught[-1].end_ns
     bound = 1.0
     for axes, wrenches, colour, label in (
-            (human, bag.human_applied, HUMAN, 'Human\n$M_{yh}$ (N m)'),
-            (agent, bag.agent_applied, AGENT, 'Robot\n$M_{yai}$ (N m)')):
+            (human, bag.human_applied, HUMAN, f'Human\n{_symbols(bag.task, "h")} (N m)'),
+            (agent, bag.agent_applied, AGENT, f'Robot\n{_symbols(bag.task, "ai")} (N m)')):
         stamps = np.arange(start, end + 1, round(POLICY_PERIOD * 1e9))
         seconds, moments = (stamps - start) * 1e-9, wrenches.moment_at(stamps)
         explores = wrenches is bag.agent_applied
-        for moment in moments.T:
-            axes.fill_between(*_envelope(seconds, moment), color=colour, linewidth=0.9, step='post',
-                              alpha=0.3 if explores else 1.0)
+        for row, moment, shade in zip(bag.task.axes, moments.T, _shades(colour, len(bag.task.axes)), strict=True):
+            name = f'$M_{AXIS_NAMES[row][-1]}$' if len(bag.task.axes) > 1 else ''
+            axes.fill_between(*_envelope(seconds, moment), color=shade, linewidth=0.9, step='post',
+                              alpha=0.3 if explores else 1.0 if not name else 0.75, label=None if explores else name)
             if explores:
-                axes.plot(seconds, _moving_mean(moment), color=colour, linewidth=1.4)
-        if explores:
-            axes.lines[-1].set_label('mean of 0.5 s')
-            axes.legend(loc='upper right', borderpad=0, bbox_to_anchor=(1, 1.28))
+                axes.plot(seconds, _moving_mean(moment), color=shade, linewidth=1.4,
+                          label=f'{name} mean of 0.5 s'.strip())
+        if explores or len(bag.task.axes) > 1:
+            axes.legend(ncols=2, loc='upper right', borderpad=0, bbox_to_anchor=(1, 1.28))
         bound = max(bound, np.abs(moments).max(initial=0.0))
         axes.set_ylabel(label)
         axes.axhline(0, color=FAINT, linewidth=0.8)
@@ -146,6 +189,16 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
                            fontsize=8.5, color=FAINT)
     human.set(ylim=(-1.12 * bound, 1.12 * bound), xlim=(0, (end - start) * 1e-9))
     agent.set_xlabel("Robot's time since the first episode (s); shaded and numbered: episodes")
+
+
+def _symbols(task: Task, who: str) -> str:
+    return ', '.join(f'$M_{{{AXIS_NAMES[row][-1]}{who}}}$' for row in task.axes)
+
+
+def _shades(colour: str, count: int) -> list[str]:
+    """``colour`` for each of a task's axes: the last is as it is, the one before it darker."""
+    red, green, blue = (0.55 * part for part in to_rgb(colour))
+    return [colour] if count == 1 else [to_hex((red, green, blue)), *[colour] * (count - 1)]
 
 
 def _envelope(seconds: np.ndarray, moment: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ from shared_control.files import write_atomically
 
 from ..bag.ball_tracks import episode_tracks
 from ..bag.reader import Bag, BagReadError, read_bag
+from ..bag.task import recorded_task
 from .episodes import EpisodeRow, read_episodes
 from .final_test import FinalTest, load_test
 from .folder import SessionFolder
@@ -38,9 +39,10 @@ def write_report(folder: SessionFolder, restarts: int | None = None) -> Summary:
         restarts = (folder.read_json(folder.summary) or {}).get('restarts')
     bag, bag_error = _read(folder)
     rows, test = read_episodes(folder.episodes), load_test(folder.test)
-    summary = summarize(folder, bag, bag_error, rows, test, restarts)
+    task = bag.task if bag else recorded_task(folder.bag)
+    summary = summarize(folder, task, bag, bag_error, rows, test, restarts)
     tracks = episode_tracks(bag) if bag else []
-    draw_picture(folder.picture, _title(summary), bag, tracks, rows, test)
+    draw_picture(folder.picture, _title(summary), bag, tracks, rows, test, task)
     write_atomically(folder.summary, (json.dumps(summary.as_dict(), indent=2) + '\n').encode())
     write_atomically(folder.report, render_page(summary, rows, test, folder.picture.read_bytes()).encode())
     return summary
@@ -76,7 +78,7 @@ def _tutor(summary: Summary) -> str:
 
 
 def _title(summary: Summary) -> str:
-    parts = [summary.preset or 'unknown preset', _tutor(summary) if summary.tutor else 'unknown tutor']
+    parts = [summary.task, summary.preset or 'unknown preset', _tutor(summary) if summary.tutor else 'unknown tutor']
     if summary.autonomous_success is not None:
         parts.append(f'alone {summary.autonomous_success} of {summary.autonomous_episodes}')
     return 'Session: ' + ' · '.join(parts)
@@ -85,7 +87,7 @@ def _title(summary: Summary) -> str:
 def _done(summary: Summary) -> str:
     """What was done, in a sentence or two."""
     episodes = 'episode' if summary.episodes_taught == 1 else 'episodes'
-    text = (f'The robot learned to balance the ball in {_number(summary.episodes_taught, "d")} {episodes} (preset '
+    text = (f'The robot learned the task {summary.task} in {_number(summary.episodes_taught, "d")} {episodes} (preset '
             f'{summary.preset or "unknown"}). ')
     if summary.tutor == 'none':
         text += 'Nobody pressed keys.'

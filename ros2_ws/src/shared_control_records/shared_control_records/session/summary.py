@@ -3,6 +3,8 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from shared_control.tasks.task import Task
+
 from ..bag.checks import check_bag
 from ..bag.reader import Bag
 from ..bag.timing import timing_of
@@ -17,6 +19,7 @@ CONTROLLER = 'torque_ctrl_node'
 class Summary:
     """What is not known is None."""
 
+    task: str
     preset: str | None
     tutor: str | None
     simulated_tutor: bool | None
@@ -49,11 +52,12 @@ class Summary:
         return asdict(self)
 
 
-def summarize(folder: SessionFolder, bag: Bag | None, bag_error: str | None, rows: list[EpisodeRow],
+def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str | None, rows: list[EpisodeRow],
               test: FinalTest | None, restarts: int | None) -> Summary:
     """The figures of a session.
 
     Args:
+        task: what was learned.
         bag: None when there is none that can be read.
         bag_error: why it cannot be read.
         rows: of the table of episodes.
@@ -65,7 +69,7 @@ def summarize(folder: SessionFolder, bag: Bag | None, bag_error: str | None, row
     timing = timing_of(bag) if bag else None
     taught = [row for row in rows if row.phase == 'teach']
     return Summary(
-        preset=settings.get('preset'), tutor=tutor,
+        task=task.name, preset=settings.get('preset'), tutor=tutor,
         simulated_tutor=None if tutor is None else 'simulated' in tutor,
         duration_s=round((bag.end_ns - bag.start_ns) * 1e-9, 3) if bag else None,
         episodes_taught=len(taught) if folder.episodes.exists() else None,

@@ -31,6 +31,8 @@ class Detour(Plate):
     """
 
     name: ClassVar[str] = 'detour'
+    instruction: ClassVar[str] = 'Bring the ball round the bar to the goal behind it and keep it there.'
+    preset: ClassVar[str] = 'coached_network'
     scene: ClassVar[Scene] = DETOUR_SCENE
     start: ClassVar[tuple[tuple[float, float], tuple[float, float]]] = ((-0.12, 0.0), (-0.12, -0.05))
     test_seconds: ClassVar[float] = 15.0

@@ -49,6 +49,7 @@ class Plate(Task):
     """
 
     name: ClassVar[str] = 'plate'
+    instruction: ClassVar[str] = 'Bring the ball to the centre of the plate and keep it there.'
     axes: ClassVar[tuple[int, ...]] = (3, 4)
     # About x, positive: the ball rolls to -y, away from who looks; about y: to +x, the left of every picture.
     keys: ClassVar[KeyMap] = {Key.LEFT: (1, 1.0), Key.RIGHT: (1, -1.0), Key.UP: (0, 1.0), Key.DOWN: (0, -1.0)}
@@ -113,6 +114,10 @@ class Plate(Task):
             lean=(float(rotation[0, 2]), float(rotation[1, 2])), height=height,
             position_error=math.hypot(self.scene.goal[0] - x, self.scene.goal[1] - y),
             manipulability=manipulability(model.jacobian(state.q)))
+
+    def on_tray(self, state: PlateState) -> tuple[float, float]:
+        """See :class:`Task`."""
+        return state.ball
 
     def observe(self, state: PlateState) -> np.ndarray:
         """From the ball to the plate's centre, velocity and lean, scaled; (6,), float32."""

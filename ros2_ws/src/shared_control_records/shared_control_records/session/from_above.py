@@ -1,0 +1,35 @@
+"""Tracks on a tray, seen from above: what a task with two axes is drawn as."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Rectangle
+from shared_control.scene import Scene
+
+from ..plotting.style import FAINT, GOOD, INK
+
+
+def draw_tray(axes: Axes, scene: Scene) -> None:
+    """The tray with its obstacles and the goal, in cm; +x is on the left and -y at the top, as on the screens."""
+    half_x, half_y = 100 * scene.half_length, 100 * scene.half_width
+    axes.set(xlim=(1.08 * half_x, -1.08 * half_x), ylim=(1.08 * half_y, -1.08 * half_y), aspect='equal',
+             xlabel='x (cm)', ylabel='y (cm)')
+    axes.grid(visible=False)
+    for side in axes.spines.values():
+        side.set_visible(False)
+    axes.add_patch(Rectangle((-half_x, -half_y), 2 * half_x, 2 * half_y, fill=False, edgecolor=FAINT, linewidth=2))
+    for box in scene.boxes:
+        if box.is_obstacle:
+            size, centre = 100 * np.array(box.size[:2]), 100 * np.array(box.centre[:2])
+            axes.add_patch(Rectangle(tuple(centre - size / 2), *size.tolist(), color=INK))
+    axes.add_patch(Circle(tuple(100 * np.array(scene.goal)), 100 * scene.goal_radius, color=GOOD, alpha=0.25,
+                          linewidth=0))
+
+
+def draw_track(axes: Axes, scene: Scene, track: np.ndarray, colour: object, alpha: float, is_lost: bool) -> None:
+    """One ball's way from its ring to its point, or to the cross where it was lost; ``track`` (n, 2), m."""
+    edge = 1.05 * np.array([scene.half_length, scene.half_width])
+    way = 100 * np.clip(track, -edge, edge)
+    axes.plot(*way.T, color=colour, alpha=alpha, linewidth=1.3)
+    axes.plot(*way[0], 'o', color=colour, alpha=alpha, markersize=4, fillstyle='none')
+    axes.plot(*way[-1], 'x' if is_lost else 'o', color=colour, alpha=alpha, markersize=8 if is_lost else 5,
+              markeredgewidth=2.5 if is_lost else 1.0)
