@@ -134,14 +134,14 @@ class PandaSimNode:
 
     def _await_torque(self, stop: Stop) -> np.ndarray | None:
         """The torque for this tick; None when the node is to stop or was paused meanwhile."""
-        waited = 0.0
+        began = time.monotonic()
         while not (stop.requested or self._paused):
             message = self._commands.wait(REPEAT_AFTER)
             torque = None if message is None else self._commands.read(message)
             if torque is not None:
                 return torque
             if message is None:
-                waited += REPEAT_AFTER
+                waited = time.monotonic() - began
                 if waited >= STANDS_STILL_AFTER:
                     self._stand_still(waited)
                 self._publish()

@@ -8,6 +8,11 @@ from shared_control_ros.fast_loop import Polled
 from shared_control_ros.stamps import to_ns
 from shared_control_ros.wrenches import moment_of
 
+SILENT_NS = 120_000_000
+"""The controller repeats its moments every ten ticks; one that is older than this at a policy tick counts no more."""
+AHEAD_NS = 1_000_000_000
+"""What waits may have been sent since the policy tick was taken up, but not this long after it."""
+
 
 class AppliedMoment:
     """Follows one of the controller's moments in the order of its stamps.
@@ -16,10 +21,11 @@ class AppliedMoment:
         node: the node that subscribes.
         topic: of the controller.
         axes: of the task.
+        frame: name of the base frame.
     """
 
-    def __init__(self, node: Node, topic: Topic, axes: tuple[int, ...]):
-        self._axes = axes
+    def __init__(self, node: Node, topic: Topic, axes: tuple[int, ...], frame: str):
+        self._axes, self._frame = axes, frame
         self._node = node
         self._input = Polled(node, topic, depth=topic.qos.depth)
         self.clear()
@@ -32,18 +38,27 @@ class AppliedMoment:
         """Forget everything, what waits included."""
         self._input.clear()
         self._next: WrenchStamped | None = None
-        self._moment = np.zeros(len(self._axes))
+        self._moment, self._stamp_ns = np.zeros(len(self._axes)), 0
 
     def before(self, stamp_ns: int) -> np.ndarray:
-        """The newest moment stamped before ``stamp_ns``, (k,), N m. Stamps must not run backwards."""
+        """The newest moment stamped before ``stamp_ns``, (k,), N m; zero when the controller has fallen silent.
+
+        Stamps must not run backwards.
+        """
         while (wrench := self._next or self._input.take()) is not None:
-            if to_ns(wrench.header.stamp) >= stamp_ns:
-                break
             self._next = None
             try:
-                self._moment = moment_of(wrench, self._axes)
+                moment, sent_ns = moment_of(wrench, self._axes, self._frame), to_ns(wrench.header.stamp)
+                if sent_ns > stamp_ns + AHEAD_NS:
+                    raise ValueError(f'its stamp is {(sent_ns - stamp_ns) * 1e-9:.3f} s ahead of /ball')
             except ValueError as error:
                 self._node.get_logger().error(
                     f'dropped a message on {self._input.topic_name}: {error}', throttle_duration_sec=1.0)
-        self._next = wrench
+                continue
+            if sent_ns >= stamp_ns:
+                self._next = wrench
+                break
+            self._moment, self._stamp_ns = moment, sent_ns
+        if stamp_ns - self._stamp_ns > SILENT_NS:
+            return np.zeros(len(self._axes))
         return self._moment

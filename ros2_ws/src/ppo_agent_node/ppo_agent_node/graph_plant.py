@@ -57,7 +57,7 @@ class GraphPlant:
         self._balls = Polled(node, contract.BALL, depth=contract.BALL.qos.depth)
         self._joints = Polled(
             node, contract.JOINT_STATES_THROTTLE, depth=contract.JOINT_STATES_THROTTLE.qos.depth, raw=True)
-        self._moments = [AppliedMoment(node, topic, axes) for topic in (
+        self._moments = [AppliedMoment(node, topic, axes, self.spec.base_frame) for topic in (
             contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.APPLIED_WRENCH)]
         self._publisher = node.create_publisher(
             contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)

@@ -37,6 +37,8 @@ from .training_topics import TrainingTopics
 
 STEPS_PER_PROGRESS = 5
 """Progress is told at 10 Hz."""
+TRY_AGAIN_SECONDS = 0.5
+"""Between a void episode and the next try, s."""
 
 
 class _Stopped(Exception):
@@ -241,6 +243,10 @@ class PpoAgentNode(Callbacks):
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""
         self.node.get_logger().warning(f'the episode is void: {error}')
+        again = time.monotonic() + TRY_AGAIN_SECONDS  # whatever is the matter may last
+        while time.monotonic() < again:
+            time.sleep(0.1)
+            self._attend()
         self._wait()
 
     def close(self) -> None:

@@ -1,11 +1,13 @@
 """The services of a simulator, called one after the other."""
 
+import time
 from collections.abc import Callable
 from typing import Any
 
 from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from shared_control.plant import PlantInterrupted
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background
 from std_srvs.srv import SetBool, Trigger
@@ -32,34 +34,52 @@ class Simulator:
         self._seed = node.create_client(SetParameters, contract.SEED_SERVICE)
 
     def pause(self, paused: bool, attend: Callable[[], None]) -> None:
-        """Stop time, or let it go on."""
-        self._call(self._pause, SetBool.Request(data=paused), attend)
+        """Stop time, or let it go on. A robot refuses that: its time goes on all the same."""
+        answer = self._call(self._pause, SetBool.Request(data=paused), attend)
+        if not answer.success:
+            self._node.get_logger().info(
+                f'{self._pause.service_name}: {answer.message or "refused"}', throttle_duration_sec=60.0)
 
     def reset(self, seed: int | None, attend: Callable[[], None]) -> None:
-        """Drop the ball anew; a ``seed`` begins the sequence of ball starts anew."""
+        """Drop the ball anew; a ``seed`` begins the sequence of ball starts anew.
+
+        Raises:
+            PlantInterrupted: the simulator refuses; the message has its reason.
+        """
         if seed is not None:
             parameter = Parameter('seed', value=seed).to_parameter_msg()
-            self._call(self._seed, SetParameters.Request(parameters=[parameter]), attend)
-        self._call(self._reset, Trigger.Request(), attend)
+            answer = self._call(self._seed, SetParameters.Request(parameters=[parameter]), attend)
+            for result in answer.results:
+                self._insist(self._seed, result.successful, result.reason)
+        answer = self._call(self._reset, Trigger.Request(), attend)
+        self._insist(self._reset, answer.success, answer.message)
+
+    @staticmethod
+    def _insist(client: Any, success: bool, message: str) -> None:
+        if not success:
+            raise PlantInterrupted(f'{client.service_name} was refused: {message or "no reason is given"}')
 
     def is_there(self) -> bool:
         """Whether its services are up."""
         return all(client.service_is_ready() for client in (self._pause, self._reset, self._seed))
 
-    def _call(self, client: Any, request: Any, attend: Callable[[], None]) -> None:
-        waited = 0.0
+    def _call(self, client: Any, request: Any, attend: Callable[[], None]) -> Any:
+        """The answer; asked for again when it does not come."""
         future = None
+        ask_again = time.monotonic() + ANSWER_SECONDS
         while True:
             if future is None and client.service_is_ready():
                 future = client.call_async(request)
-                waited = 0.0
+                ask_again = time.monotonic() + ANSWER_SECONDS
             self._background.spin_once(0.05)
             if future is not None and future.done():
-                return
-            waited += 0.05
-            if waited > ANSWER_SECONDS:
+                return future.result()
+            if time.monotonic() > ask_again:
                 self._node.get_logger().warning(
-                    f'no answer on {client.srv_name}: is the simulator running?', throttle_duration_sec=5.0)
+                    f'no answer on {client.service_name} for {ANSWER_SECONDS:.0f} s: is the simulator running?',
+                    throttle_duration_sec=5.0)
+                if future is not None:
+                    client.remove_pending_request(future)
                 future = None
-                waited = 0.0
+                ask_again = time.monotonic() + ANSWER_SECONDS
             attend()

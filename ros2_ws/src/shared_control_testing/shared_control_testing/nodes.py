@@ -41,8 +41,10 @@ def free_domain() -> Iterator[int]:
         except OSError:
             lock.close()
             continue
-        with lock, pytest.MonkeyPatch.context() as monkeypatch:
-            for variable, value in {**node_environment(), 'ROS_DOMAIN_ID': str(candidate)}.items():
+        with (lock, pytest.MonkeyPatch.context() as monkeypatch,
+              tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as home):  # what nodes keep there ends with them
+            for variable, value in {
+                    **node_environment(), 'ROS_DOMAIN_ID': str(candidate), 'ROS_HOME': home}.items():
                 monkeypatch.setenv(variable, value)
             yield candidate
         return

@@ -6,6 +6,7 @@ Sums the moments of human and agent, turns them into a wrench at the tray, and p
 """
 
 import gc
+import time
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -34,6 +35,10 @@ from .wrench_input import WrenchInput
 
 TICKS_PER_POLL = 10
 """How often services are looked at and unchanged moments are published again."""
+SILENCE = 0.1
+"""Joint states that do not come for this long are waited for no more in this turn, s."""
+LEAVE_SECONDS = 3.0
+"""A controller that leaves brings the arm to rest within this, or leaves without, s."""
 
 
 class TorqueCtrlNode:
@@ -61,8 +66,8 @@ class TorqueCtrlNode:
             node, 'wait_for', ['none'], 'Sources to wait for at every policy tick, for results that do not depend '
             'on timing.', choices=('none', 'human', 'agent'))
         enabled = declare(
-            node, 'enabled', False, 'Send torques from the start: for simulations. On a robot a person calls '
-            'controller/enable.')
+            node, 'enabled', False, 'Send torques without being asked, as soon as the arm stands near the reference: '
+            'for simulations. On a robot a person calls controller/enable.')
 
         self._controller = ComputedTorqueController(
             RobotModel(robot), task.axes, gains=gains, dt=CONTROL_PERIOD, horizon=horizon,
@@ -83,8 +88,8 @@ class TorqueCtrlNode:
         self._applied = AppliedMoments(node, task.axes, robot.base_frame)
         self._safety = Safety(node, robot, enabled, self._report)
 
-        if not enabled:
-            node.get_logger().info(self._safety.problem)
+        if self._safety.is_stopped or not enabled:
+            node.get_logger().warning(self._safety.problem)
 
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
         self._background = Background(node)
@@ -98,7 +103,7 @@ class TorqueCtrlNode:
         gc.freeze()
         gc.disable()
         while not stop.requested:
-            message = self._joint_states.wait(0.1)
+            message = self._joint_states.wait(SILENCE)
             if message is None:
                 self._serve()
                 self._diagnostics.skip()
@@ -129,7 +134,7 @@ class TorqueCtrlNode:
         now_ns = stamp_of(message)
         if not self._safety.enabled:
             self._stand_by(now_ns, *state)
-        elif not self._is_leftover(now_ns):
+        if self._safety.enabled and not self._is_leftover(now_ns):
             self._answer(now_ns, *state, stop)
 
     def _answer(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray, stop: Stop) -> None:
@@ -175,7 +180,15 @@ class TorqueCtrlNode:
             emergency_stop=self._safety.is_stopped, applied=self._applied.applied)
 
     def close(self) -> None:
-        """Nothing to undo: the robot stops applying what it no longer receives."""
+        """Bring an arm that is moved to rest: without torques it would go on by its momentum until it brakes."""
+        self._safety.end_torques()
+        deadline = time.monotonic() + LEAVE_SECONDS
+        while self._safety.stopping_ticks and time.monotonic() < deadline:
+            message = self._joint_states.wait(SILENCE)
+            if message is None:
+                break
+            self._hear(message, Stop())
+        self._safety.leave()
         self._background.close()
 
 

@@ -12,6 +12,8 @@ from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from std_srvs.srv import SetBool, Trigger
 
+from .stop_record import StopRecord
+
 STOPPING_TICKS = round(0.5 / CONTROL_PERIOD)
 """How long the arm is brought to rest by damping before the torques end."""
 START_WITHIN = 0.2
@@ -24,28 +26,33 @@ class Safety:
     """The controller's state, and the services and the topic that change it.
 
     Disabled, enabled, or stopped by the emergency stop, which no request but its own reset ends, and after which the
-    controller is disabled. Whenever the torques are to end, the arm is first brought to rest.
+    controller is disabled. Whenever the torques are to end, the arm is first brought to rest. The emergency stop
+    outlives the controller's process (:class:`StopRecord`).
 
     Args:
         node: the controller's node; serves ``controller/enable``, ``controller/emergency_stop`` and
             ``controller/reset_emergency_stop``, and subscribes to ``emergency_stop``.
         spec: the robot.
-        enabled: from the start.
+        enables_itself: as soon as nothing speaks against it, without being asked: for simulations.
         on_change: called after each change.
     """
 
-    def __init__(self, node: Node, spec: RobotSpec, enabled: bool, on_change: Callable[[], None]):
+    def __init__(self, node: Node, spec: RobotSpec, enables_itself: bool, on_change: Callable[[], None]):
         self._node = node
         self._spec = spec
         self._on_change = on_change
-        self.enabled = enabled
+        self._record = StopRecord(node.context.get_domain_id(), node.get_namespace())
+        self.enabled = False
         """Whether torques are computed and sent."""
         self.stopping_ticks = 0
         """For so many more ticks the arm is to be brought to rest."""
         self._q = spec.home
         self._q_seen = -math.inf
-        self.is_stopped = False
+        self.is_stopped = self._record.is_on()
         """Whether the emergency stop is on."""
+        if not self.is_stopped:
+            self._record.forget()
+        self._enables_itself = enables_itself and not self.is_stopped
         self._enable_name = node.resolve_service_name(contract.ENABLE_SERVICE)
         self._reset_name = node.resolve_service_name(contract.RESET_EMERGENCY_STOP_SERVICE)
         self._stop_messages = Polled(node, contract.EMERGENCY_STOP, depth=contract.EMERGENCY_STOP.qos.depth)
@@ -64,6 +71,11 @@ class Safety:
         """Joint positions while disabled, (n,), rad: they decide whether the controller may be enabled."""
         self._q = q
         self._q_seen = time.monotonic()
+        if self._enables_itself:
+            if obstacle := self._obstacle():
+                self._node.get_logger().warning(f'not enabled yet: {obstacle}', throttle_duration_sec=5.0)
+            else:
+                self._enable()
 
     def hear(self) -> None:
         """Look whether somebody has published an emergency stop; false means nothing: only the service ends one."""
@@ -71,11 +83,23 @@ class Safety:
             if message.data and not self.is_stopped:
                 self._emergency_stop()
 
-    def _end_torques(self) -> None:
+    def end_torques(self) -> None:
+        """Disable; the arm is to be brought to rest if it was moved."""
+        self._enables_itself = False
         if self.enabled:
             self.enabled = False
             self.stopping_ticks = STOPPING_TICKS
             self._q_seen = -math.inf
+
+    def leave(self) -> None:
+        """The controller leaves cleanly."""
+        if self.is_stopped:
+            self._record.leave()
+
+    def _enable(self) -> None:
+        self.enabled = True
+        self._enables_itself = False
+        self.stopping_ticks = 0
 
     def _obstacle(self) -> str:
         """What speaks against enabling now; empty when nothing does."""
@@ -97,10 +121,9 @@ class Safety:
                 response.message = f'not enabled: {obstacle}'
                 self._node.get_logger().error(response.message)
                 return response
-            self.enabled = True
-            self.stopping_ticks = 0
+            self._enable()
         elif not request.data:
-            self._end_torques()
+            self.end_torques()
         response.success = True
         response.message = (
             'enabled' if self.enabled else 'disabled: the arm is brought to rest, then no torques are sent')
@@ -115,13 +138,19 @@ class Safety:
 
     def _emergency_stop(self) -> None:
         self.is_stopped = True
-        self._end_torques()
+        self.end_torques()
+        try:
+            self._record.keep()
+        except OSError as error:
+            self._node.get_logger().error(
+                f'the emergency stop holds, but not beyond the life of this process: it cannot be kept ({error})')
         self._changed(self.problem)
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success = self.is_stopped
         response.message = 'the emergency stop is over; disabled' if self.is_stopped else 'there is no emergency stop'
         self.is_stopped = False
+        self._record.forget()
         self._changed(response.message)
         return response
 

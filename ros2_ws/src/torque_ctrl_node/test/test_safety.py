@@ -1,0 +1,164 @@
+"""What holds across the controller's end, and what it does when it leaves."""
+
+import signal
+import time
+
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+from shared_control.robot.spec_file import panda
+from shared_control_ros import contract
+from shared_control_ros.stamps import set_ns
+from std_srvs.srv import SetBool, Trigger
+from torque_ctrl_node import stop_record
+from torque_ctrl_node.stop_record import StopRecord
+
+
+class Robot:
+    """A robot that goes on by itself: a state a millisecond, whoever answers."""
+
+    def __init__(self, observer):
+        self.observer = observer
+        self.commands = observer.listen(contract.EFFORT_COMMANDS)
+        self.states = observer.publisher(contract.JOINT_STATES)
+        self.now_ns = time.time_ns()
+        self.message = JointState(
+            name=list(panda().joints), position=panda().home.tolist(), velocity=[0.0] * 7, effort=[0.0] * 7)
+
+    def run(self, ticks=300, off=0.0, velocity=0.0):
+        """The torques that answer some ticks at one posture."""
+        self.message.position = (panda().home + off).tolist()
+        self.message.velocity = [velocity] * 7
+        count = len(self.commands)
+        for _ in range(ticks):
+            self.tick()
+        self.observer.spin_for(0.1)
+        return [np.array(command.data) for command in self.commands[count:]]
+
+    def tick(self):
+        self.now_ns += 1_000_000
+        set_ns(self.message.header.stamp, self.now_ns)
+        self.states.publish(self.message)
+        time.sleep(0.001)
+
+    def run_until_answered(self, **posture):
+        for _ in range(100):
+            if self.run(50, **posture):
+                return
+        pytest.fail('no torque comes')
+
+    def run_until_silent(self):
+        for _ in range(100):
+            if not self.run(100):
+                return
+        pytest.fail('torques do not end')
+
+    def ask(self, name, kind=Trigger, **request):
+        return self.observer.call(kind, name, kind.Request(**request), beside=self.tick)
+
+
+@pytest.fixture
+def robot(observer):
+    return Robot(observer)
+
+
+def start(start_node):
+    """As a session and the launch files start it beside a simulator."""
+    node = start_node('torque_ctrl_node', enabled=True)
+    node.wait_for_log('ready')
+    return node
+
+
+@pytest.mark.parametrize('end', [signal.SIGKILL, signal.SIGTERM])
+def test_an_emergency_stop_outlives_the_controller(start_node, robot, end):
+    node = start(start_node)
+    robot.run_until_answered()
+    assert robot.ask(contract.EMERGENCY_STOP_SERVICE).success
+    robot.run_until_silent()
+    node.stop(end)
+    node = start(start_node)
+    assert 'emergency stop: /controller/reset_emergency_stop' in node.log()
+    assert robot.run() == []
+    refused = robot.ask(contract.ENABLE_SERVICE, SetBool, data=True)
+    assert not refused.success and 'reset_emergency_stop first' in refused.message
+    assert robot.ask(contract.RESET_EMERGENCY_STOP_SERVICE).success
+    assert robot.run() == [], 'disabled after the stop is over'
+    assert robot.ask(contract.ENABLE_SERVICE, SetBool, data=True).success
+    robot.run_until_answered()
+    node.stop(signal.SIGKILL)
+    start(start_node)
+    robot.run_until_answered()
+
+
+def test_enables_itself_only_near_the_reference(start_node, robot):
+    node = start(start_node)
+    assert robot.run(off=0.5) == []
+    node.wait_for_log('not enabled yet: panda_joint1 is 0.50 rad off the reference')
+    robot.run_until_answered(off=0.1)
+
+
+def test_does_not_enable_itself_after_it_was_disabled(start_node, robot):
+    start(start_node)
+    robot.run(off=0.5)
+    assert robot.ask(contract.ENABLE_SERVICE, SetBool, data=False).success
+    assert robot.run(off=0.0) == []
+
+
+def test_a_controller_that_leaves_brings_the_arm_to_rest(start_node, robot):
+    node = start(start_node)
+    robot.run_until_answered()
+    robot.message.velocity = [0.5] * 7
+    node.process.send_signal(signal.SIGTERM)
+    count = len(robot.commands)
+    while node.process.poll() is None:
+        robot.tick()
+    robot.observer.spin_for(0.1)
+    last = [np.array(command.data) for command in robot.commands[count:]][-100:]
+    assert len(last) == 100 and node.process.returncode == 0
+    assert all(torque[0] < 0.0 for torque in last), 'against the motion; the first joint carries no weight'
+
+
+class TestStopRecord:
+    """The record itself, with the starter as the test says."""
+
+    @pytest.fixture(autouse=True)
+    def folders(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(stop_record, '_folders', lambda: [tmp_path / 'home', tmp_path / 'temporary'])
+        self.starter = 'session 1'
+        monkeypatch.setattr(stop_record, '_starter', lambda: self.starter)
+        self.path = tmp_path
+
+    def test_is_off_at_first_and_when_forgotten(self):
+        record = StopRecord(3, '/')
+        assert not record.is_on()
+        record.keep()
+        assert record.is_on()
+        record.forget()
+        assert not record.is_on() and not list(self.path.rglob('*.json'))
+
+    def test_belongs_to_one_graph(self):
+        StopRecord(3, '/arm').keep()
+        assert StopRecord(3, '/arm').is_on()
+        assert not StopRecord(3, '/').is_on() and not StopRecord(4, '/arm').is_on()
+
+    def test_after_a_crash_it_holds_whoever_starts_the_controller(self):
+        StopRecord(3, '/').keep()
+        self.starter = 'session 2'
+        assert StopRecord(3, '/').is_on()
+
+    def test_after_a_clean_end_it_holds_for_the_same_starter_alone(self):
+        StopRecord(3, '/').keep()
+        StopRecord(3, '/').leave()
+        assert StopRecord(3, '/').is_on()
+        self.starter = 'session 2'
+        assert not StopRecord(3, '/').is_on()
+
+    def test_goes_elsewhere_where_home_cannot_be_written(self):
+        (self.path / 'home').write_text('a file')
+        StopRecord(3, '/').keep()
+        assert StopRecord(3, '/').is_on() and list(self.path.glob('temporary/*'))
+
+    def test_a_damaged_record_is_one_of_a_stop(self):
+        StopRecord(3, '/').keep()
+        next(self.path.rglob('*.json')).write_text('{')
+        assert StopRecord(3, '/').is_on()

@@ -1,0 +1,97 @@
+"""The emergency stop on disk: a controller that died and was started again finds it there."""
+
+import json
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+from shared_control.files import write_atomically
+
+
+class StopRecord:
+    """Says whether the emergency stop of a graph is on, across the death of its controller.
+
+    It is kept in ``$ROS_HOME`` (``~/.ros``), or in the folder of temporary files where that cannot be written, until it
+    is forgotten. Only a controller that left cleanly and is then started by somebody else begins without it: a
+    supervisor that starts it again, whatever ended it, is the same one as before.
+
+    Args:
+        domain: the ROS domain.
+        namespace: of the controller.
+    """
+
+    def __init__(self, domain: int, namespace: str):
+        self._name = f'emergency_stop_domain_{domain}{namespace.rstrip("/").replace("/", "__")}.json'
+
+    def is_on(self) -> bool:
+        """Whether a stop holds that was kept before this process."""
+        return any(not content['left'] or content['starter'] == _starter() for _, content in self._kept())
+
+    def keep(self) -> None:
+        """The emergency stop is on.
+
+        Raises:
+            OSError: it cannot be written anywhere.
+        """
+        self._write(left=False)
+
+    def leave(self) -> None:
+        """This controller leaves cleanly; a stop that is on is kept for whoever has started it."""
+        for path, _ in self._kept():
+            with suppress(OSError):
+                _write(path, left=True)
+
+    def forget(self) -> None:
+        """The emergency stop is over."""
+        for path, _ in self._kept():
+            with suppress(OSError):
+                path.unlink()
+
+    def _write(self, left: bool) -> None:
+        problem = OSError('no folder')
+        for folder in _folders():
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+                _write(folder / self._name, left)
+            except OSError as error:
+                problem = error
+            else:
+                return
+        raise problem
+
+    def _kept(self) -> Iterator[tuple[Path, dict[str, str | bool]]]:
+        for path in [folder / self._name for folder in _folders()]:
+            with suppress(FileNotFoundError, NotADirectoryError):
+                yield path, _read(path)
+
+
+def _write(path: Path, left: bool) -> None:
+    write_atomically(path, json.dumps({'left': left, 'starter': _starter()}).encode())
+
+
+def _read(path: Path) -> dict[str, str | bool]:
+    """A record that cannot be read is one of a stop."""
+    try:
+        content = json.loads(path.read_bytes())
+        return {'left': bool(content['left']), 'starter': str(content['starter'])}
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError, KeyError, TypeError):
+        return {'left': False, 'starter': ''}
+
+
+def _folders() -> list[Path]:
+    home = os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')
+    return [Path(home) / 'shared_control', Path(tempfile.gettempdir()) / f'shared_control_{os.getuid()}']
+
+
+def _starter() -> str:
+    """The process that started this one: number and time of its start, since numbers are used again."""
+    parent = os.getppid()
+    try:
+        started = Path(f'/proc/{parent}/stat').read_text().rpartition(')')[2].split()[19]
+    except (OSError, IndexError):
+        started = ''
+    return f'{parent} {started}'
