@@ -1,7 +1,8 @@
-"""From the bytes a terminal sends to strokes."""
+"""From the bytes a terminal sends to strokes, and from strokes to keys that are down."""
 
 import re
-from collections.abc import Collection
+import time
+from collections.abc import Collection, Iterable
 from enum import Enum
 
 
@@ -24,9 +25,20 @@ _LETTERS = {
     b'q': Stroke.FINISH, b'Q': Stroke.FINISH, b'p': Stroke.PAUSE, b'P': Stroke.PAUSE, b'\x0c': Stroke.REDRAW}
 _ARROWS = {b'A': Stroke.UP, b'B': Stroke.DOWN, b'C': Stroke.RIGHT, b'D': Stroke.LEFT}
 
-# An arrow is ESC [ D, ESC O D (application mode) or, with Shift or Ctrl held, ESC [ 1 ; 5 D.
-_TOKEN = re.compile(rb'\x1b[\[O][0-9;]*[@-~]|.', re.DOTALL)
-_UNFINISHED = re.compile(rb'\x1b(?:[\[O][0-9;]*)?\Z')
+# What a terminal sends besides characters (ECMA-48 and xterm). An arrow is ESC [ D, ESC O D (application mode) or, with
+# Shift or Ctrl held, ESC [ 1 ; 5 D; all else is passed over as a whole, or its letters would be keys.
+_PASTE = rb'\x1b\[200~.*?\x1b\[201~'
+_FUNCTION_KEY_OF_THE_CONSOLE = rb'\x1b\[\[[A-E]'
+_X10_MOUSE = rb'\x1b\[M.{3}'
+_CONTROL_SEQUENCE = rb'\x1b\[[0-?]*[ -/]*[@-~]|\x1bO[0-9;]*[@-~]'
+_STRING = rb'\x1b[\]PX^_].*?(?:\x07|\x1b\\)'
+_SEQUENCE = re.compile(
+    b'|'.join((_PASTE, _FUNCTION_KEY_OF_THE_CONSOLE, _X10_MOUSE, _CONTROL_SEQUENCE, _STRING)), re.DOTALL)
+_BEGUN = re.compile(
+    rb'\x1b(?:\[(?:200~(?:(?!\x1b\[201~).)*|\[|M.{0,2}|[0-?]*[ -/]*)|O[0-9;]*|[\]PX^_](?:(?!\x07|\x1b\\).)*)?', re.DOTALL)
+_ARROW = re.compile(rb'\x1b(?:\[(?:1;[0-9]+)?|O[0-9;]*)([A-D])')
+_WITHIN = 0.2
+"""The rest of a sequence comes within this; what a person types after Escape does not, s."""
 
 
 class Keyboard:
@@ -39,19 +51,67 @@ class Keyboard:
     def __init__(self, unknown: Collection[Stroke] = (Stroke.UP, Stroke.DOWN)) -> None:
         self._unknown = unknown
         self._rest = b''
+        self._read_at = 0.0
 
     def strokes(self, data: bytes) -> list[Stroke]:
         """The strokes in ``data``, in order. Keys that mean nothing here are passed over."""
-        data = self._rest + data
-        unfinished = _UNFINISHED.search(data)
-        self._rest = unfinished.group() if unfinished else b''
-        if unfinished:
-            data = data[:unfinished.start()]
-        found = (self._stroke(token) for token in _TOKEN.findall(data))
+        now = time.monotonic()
+        if now - self._read_at > _WITHIN:
+            self._rest = b''
+        if not data:
+            return []
+        self._read_at = now
+        data, self._rest = self._rest + data, b''
+        found = []
+        position = 0
+        while position < len(data):
+            if _BEGUN.fullmatch(data, position):
+                self._rest = data[position:]
+                break
+            sequence = _SEQUENCE.match(data, position)
+            token = sequence.group() if sequence else data[position:position + 1]
+            found.append(_stroke(token))
+            position += len(token)
         return [stroke for stroke in found if stroke is not None and stroke not in self._unknown]
 
-    @staticmethod
-    def _stroke(token: bytes) -> Stroke | None:
-        if token.startswith(b'\x1b') and len(token) > 1:
-            return _ARROWS.get(token[-1:])
-        return _LETTERS.get(token)
+
+def _stroke(token: bytes) -> Stroke | None:
+    arrow = _ARROW.fullmatch(token)
+    return _ARROWS[arrow[1]] if arrow else _LETTERS.get(token)
+
+
+class HeldKeys:
+    """Tells presses from the repetitions by which a terminal reports a key that is held down.
+
+    A terminal reports no release: a key is down until its strokes have not come for ``REPEATS_WITHIN``. The first
+    repetition comes late (0.25 to 0.7 s after the press, as the keyboard is set) and counts as a press.
+
+    Args:
+        period: at which :meth:`update` is meant to be called, s.
+    """
+
+    REPEATS_WITHIN = 0.13
+    """Between two repetitions, s: 10 a second on a Linux console, 30 elsewhere. Nobody presses one key so quickly."""
+
+    def __init__(self, period: float) -> None:
+        self._longest = 2.0 * period  # what came while nobody looked may have come all the time
+        self._silent: dict[Stroke, float] = {}
+        self._looked_at = 0.0
+
+    @property
+    def down(self) -> Collection[Stroke]:
+        """The keys that are down."""
+        return self._silent.keys()
+
+    def update(self, strokes: Iterable[Stroke], now: float) -> list[Stroke]:
+        """The keys that went down, given the strokes since the last call and the time, s."""
+        elapsed = min(now - self._looked_at, self._longest)
+        self._looked_at = now
+        self._silent = {stroke: silent + elapsed for stroke, silent in self._silent.items()}
+        pressed = []
+        for stroke in strokes:
+            if self._silent.get(stroke, self.REPEATS_WITHIN) >= self.REPEATS_WITHIN:
+                pressed.append(stroke)
+            self._silent[stroke] = 0.0
+        self._silent = {stroke: silent for stroke, silent in self._silent.items() if silent < self.REPEATS_WITHIN}
+        return pressed

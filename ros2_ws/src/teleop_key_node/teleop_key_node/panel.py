@@ -14,7 +14,7 @@ from shared_control_ros.watching.observer import Observer
 from shared_control_ros.watching.requests import Requests
 from shared_control_ros.watching.scene import Scene
 
-from .keyboard import Keyboard, Stroke
+from .keyboard import HeldKeys, Keyboard, Stroke
 from .screen import render
 from .sources import Sources
 from .terminal import Terminal
@@ -52,6 +52,7 @@ class Panel:
         self.terminal = terminal
         known = {*keys, Key.SPACE} if keys else set()
         self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
+        self._held = HeldKeys(1.0 / rate)
         self._sends_keys = bool(keys)
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
         self._joy = Joy(buttons=[0] * max(BUTTONS, *(key + 1 for key in (*keys, Key.SPACE))))
@@ -74,30 +75,31 @@ class Panel:
         self._message_until = time.monotonic() + _MESSAGE_FOR
 
     def read(self, now_ns: int) -> None:
-        """Publish what was typed, and every 0.08 s that the terminal is still there."""
-        strokes = self._keyboard.strokes(self.terminal.read())
+        """Publish which keys are down: at every change, and every 0.08 s as a sign that the terminal is still there."""
+        pressed = self._held.update(self._keyboard.strokes(self.terminal.read()), time.monotonic())
         if not self.terminal.is_entered:
             return  # in the background: as good as gone
         set_ns(self._joy.header.stamp, now_ns)
-        for stroke in strokes:
+        for stroke in pressed:
             self._obey(stroke)
+        buttons = [int(key in self._held_keys()) for key in range(len(self._joy.buttons))]
+        changed = buttons != list(self._joy.buttons)
+        self._joy.buttons = buttons
         self._ticks += 1
-        if self._sends_keys and (strokes or self._ticks % self._repeat_ticks == 0):
+        if self._sends_keys and (changed or self._ticks % self._repeat_ticks == 0):
             self._keys.publish(self._joy)
         self.requests.expire()
 
+    def _held_keys(self) -> set[Key]:
+        return {_KEYS[stroke] for stroke in self._held.down if stroke in _KEYS}
+
     def _obey(self, stroke: Stroke) -> None:
-        if stroke in _KEYS:
-            self._joy.buttons[_KEYS[stroke]] = 1
-            self._keys.publish(self._joy)
-            self._joy.buttons[_KEYS[stroke]] = 0
-            self._keys.publish(self._joy)
-        elif stroke is Stroke.FINISH:
+        if stroke is Stroke.FINISH:
             self.requests.finish()
         elif stroke is Stroke.PAUSE:
             self._paused_stamp_ns = self._observer.stamp_ns
             self.requests.toggle_pause()
-        else:
+        elif stroke is Stroke.REDRAW:
             self.terminal.redraw()
 
     def draw(self, sources: Sources, lesson: Lesson) -> None:

@@ -3,7 +3,7 @@
 import pytest
 from shared_control.tasks.balance import BALANCE
 from shared_control.teaching.key_device import KeyDevice
-from teleop_key_node.keyboard import Keyboard, Stroke
+from teleop_key_node.keyboard import HeldKeys, Keyboard, Stroke
 from teleop_key_node.sources import Sources
 
 SECOND = 1_000_000_000
@@ -17,6 +17,15 @@ SECOND = 1_000_000_000
     (b'qp\x0c', [Stroke.FINISH, Stroke.PAUSE, Stroke.REDRAW]),
     (b'\x1b[A\x1b[3~xyz\xc3\xa4\x1b[200~', []),
     (b'\x1ba', [Stroke.LEFT]),
+    (b'\x1b[[A\x1b[[C\x1b[[Da', [Stroke.LEFT]),  # F1, F3, F4 of the Linux console
+    (b'\x1bOP\x1b[15~\x1b[1;2Pa', [Stroke.LEFT]),
+    (b'\x1b]11;rgb:1a1a/2d2d/adda\x1b\\a', [Stroke.LEFT]),
+    (b'\x1b]0;a title, paused\x07d', [Stroke.RIGHT]),
+    (b'\x1bP1$r0 q\x1b\\a', [Stroke.LEFT]),
+    (b'\x1b[M daa', [Stroke.LEFT]),  # X10 mouse
+    (b'\x1b[<0;10;20Ma', [Stroke.LEFT]),
+    (b'\x1b[200~add a pq\x1b[D\x1b[201~a', [Stroke.LEFT]),
+    (b'\x1b[5;3Dd\x1b[?62;c\x1b[24;80R', [Stroke.RIGHT]),
 ])
 def test_strokes(data, strokes):
     assert Keyboard().strokes(data) == strokes
@@ -26,6 +35,45 @@ def test_strokes(data, strokes):
 
 def test_a_task_with_two_axes_has_up_and_down():
     assert Keyboard(unknown=()).strokes(b'\x1b[Aw\x1b[Bs') == [Stroke.UP, Stroke.UP, Stroke.DOWN, Stroke.DOWN]
+
+
+def test_what_is_typed_after_escape_is_a_key(monkeypatch):
+    now = 100.0
+    monkeypatch.setattr('teleop_key_node.keyboard.time.monotonic', lambda: now)
+    keyboard = Keyboard()
+    assert keyboard.strokes(b'\x1bP') == []  # may begin a string
+    now += 0.5
+    assert keyboard.strokes(b'a') == [Stroke.LEFT]
+
+
+def presses(times, look=0.02):
+    """Presses of the left key whose strokes come at ``times``, looked at every ``look`` s."""
+    held, now, count, end = HeldKeys(0.02), 100.0, 0, 100.0 + max(times) + 5 * look + 0.2
+    while now < end:
+        now += look
+        due = [t for t in times if 100.0 + t <= now]
+        times = times[len(due):]
+        count += len(held.update([Stroke.LEFT] * len(due), now))
+    assert not held.down
+    return count
+
+
+@pytest.mark.parametrize('period', [1 / 30, 1 / 25, 0.092])
+def test_repetitions_of_a_held_key_are_no_presses(period):
+    repeats = [0.5 + period * count for count in range(round(3 / period))]
+    assert presses([0.0, *repeats]) == 2, 'the press, and the late first repetition'
+    assert presses(repeats, look=0.5) == 1, 'on a machine that comes to it twice a second'
+
+
+def test_quick_presses_of_a_person_all_count():
+    assert presses([0.15 * count for count in range(20)]) == 20
+
+
+def test_each_key_is_held_on_its_own():
+    held = HeldKeys(0.02)
+    assert held.update([Stroke.LEFT, Stroke.SPACE, Stroke.LEFT], 10.0) == [Stroke.LEFT, Stroke.SPACE]
+    assert set(held.down) == {Stroke.LEFT, Stroke.SPACE}
+    assert held.update([Stroke.RIGHT], 10.05) == [Stroke.RIGHT]
 
 
 class Broken(KeyDevice):

@@ -9,6 +9,7 @@ import pytest
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
+from shared_control.keys import Key, KeyPresses
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from std_srvs.srv import SetBool, Trigger
@@ -20,26 +21,38 @@ ENTER, LEAVE = '\x1b[?1049h', '\x1b[?1049l'
 def test_typed_keys_reach_the_topics(graph, start_in_terminal):
     terminal = start_in_terminal()
     for keys, m_y in ((LEFT, 5.0), (b'a', 10.0), (RIGHT, 5.0), (b'd', 0.0), (b'\x1bOC', -5.0), (b' ', 0.0),
-                      (LEFT + LEFT, 10.0)):
+                      (LEFT, 5.0), (LEFT, 10.0)):
         terminal.type(keys)
         graph.expect(m_y)
+        graph.hold(m_y, 0.3)  # the key is up again: a terminal does not say so
     graph.hold(10.0, 1.0)  # the terminal repeats its state: it is still there
     terminal.expect('+10.0 N m')
 
-    states = []
+    states, pressed, keys = [], [], KeyPresses()
     while (joy := graph.joys.take()) is not None:
         assert joy.header.frame_id == 'terminal'
         states.append(tuple(joy.buttons))
-    presses = [state for state in states if any(state)]
-    left, right, space = (1, 0, 0), (0, 1, 0), (0, 0, 1)
-    assert presses == [left, left, right, right, right, space, left, left]
-    assert all(states[i + 1] == (0, 0, 0) for i, state in enumerate(states) if any(state))
-    assert len(states) - 2 * len(presses) >= 10, 'the state is repeated at 10 Hz'
+        pressed += keys.update(joy.buttons)
+    assert pressed == [Key.LEFT] * 2 + [Key.RIGHT] * 3 + [Key.SPACE] + [Key.LEFT] * 2
+    assert states[-1] == (0, 0, 0)
+    assert len(states) - 2 * len(pressed) >= 10, 'the state is repeated at 10 Hz'
 
     terminal.type(b'\x03')
     assert terminal.popen.wait(5.0) == 0
     graph.expect(0.0)
     assert terminal.modes == terminal.modes_before
+
+
+def test_a_key_that_is_held_does_not_count_as_often_as_the_terminal_repeats_it(graph, start_in_terminal):
+    terminal = start_in_terminal()
+    for _ in range(60):
+        terminal.type(LEFT)
+        time.sleep(0.033)
+    graph.hold(graph.listen(), 0.3)
+    pressed, keys = [], KeyPresses()
+    while (joy := graph.joys.take()) is not None:
+        pressed += keys.update(joy.buttons)
+    assert 1 <= len(pressed) <= 10, 'one, and another whenever this test or the node was held up'
 
 
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
