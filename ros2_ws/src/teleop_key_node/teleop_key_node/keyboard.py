@@ -35,7 +35,8 @@ _STRING = rb'\x1b[\]PX^_].*?(?:\x07|\x1b\\)'
 _SEQUENCE = re.compile(
     b'|'.join((_PASTE, _FUNCTION_KEY_OF_THE_CONSOLE, _X10_MOUSE, _CONTROL_SEQUENCE, _STRING)), re.DOTALL)
 _BEGUN = re.compile(
-    rb'\x1b(?:\[(?:200~(?:(?!\x1b\[201~).)*|\[|M.{0,2}|[0-?]*[ -/]*)|O[0-9;]*|[\]PX^_](?:(?!\x07|\x1b\\).)*)?', re.DOTALL)
+    rb'\x1b(?:\[(?:200~(?:(?!\x1b\[201~).)*|\[|M.{0,2}|[0-?]*[ -/]*)|O[0-9;]*|[\]PX^_](?:(?!\x07|\x1b\\).)*)?',
+    re.DOTALL)
 _ARROW = re.compile(rb'\x1b(?:\[(?:1;[0-9]+)?|O[0-9;]*)([A-D])')
 _WITHIN = 0.2
 """The rest of a sequence comes within this; what a person types after Escape does not, s."""
