@@ -9,9 +9,16 @@ import argparse
 import sys
 from importlib.metadata import entry_points
 
+from .streams import lossy_output
+
 
 def main() -> int:
     """Entry point."""
+    with lossy_output():
+        return _run()
+
+
+def _run() -> int:
     parser = argparse.ArgumentParser(
         prog='shared-control', description='Teach a robot together with a learning agent.')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)

@@ -1,8 +1,15 @@
-"""Writing files so that a reader never sees half of one."""
+"""Writing files so that a reader never sees half of one, and by one process at a time."""
 
+import errno
+import fcntl
 import os
 import tempfile
+from contextlib import suppress
 from pathlib import Path
+from typing import IO
+
+_CANNOT_LOCK = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP, errno.EINVAL)
+"""What ``flock`` gives on file systems that have none (some Lustre and NFS mounts)."""
 
 
 def write_atomically(path: Path, content: bytes) -> None:
@@ -14,8 +21,28 @@ def write_atomically(path: Path, content: bytes) -> None:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        temporary.chmod(0o644)
+        with suppress(PermissionError):  # FAT and some network file systems have no modes
+            temporary.chmod(0o644)
         temporary.replace(path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def lock(file: IO[bytes]) -> bool:
+    """Claim an open file for this process until it is closed or the process ends, however it ends.
+
+    Returns:
+        False when its file system has no locks: nobody is kept from it then.
+
+    Raises:
+        BlockingIOError: another process has claimed it.
+        OSError: it cannot be claimed for another reason.
+    """
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        if error.errno in _CANNOT_LOCK:
+            return False
+        raise
+    return True

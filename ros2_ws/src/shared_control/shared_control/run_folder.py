@@ -1,15 +1,12 @@
 """The folder that a run writes: what in it is the run's own, and who may write there."""
 
-import errno
-import fcntl
 import logging
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import IO
 
-_CANNOT_LOCK = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP, errno.EINVAL)
-"""What ``flock`` gives on file systems that have none."""
+from .files import lock
 
 
 class RunFolderError(OSError):
@@ -76,17 +73,16 @@ class RunFolder:
         except OSError as error:
             raise self._cannot_write(error) from error
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if not lock(file):
+                logging.getLogger(__name__).warning(
+                    '%s is on a file system without locks: see to it yourself that one %s at a time writes there',
+                    self.path, self._kind)
         except BlockingIOError as error:
             file.close()
             raise RunFolderError(f'the {self._kind} folder {self.path} is in use by another {self._kind}') from error
         except OSError as error:
-            if error.errno not in _CANNOT_LOCK:
-                file.close()
-                raise self._cannot_write(error) from error
-            logging.getLogger(__name__).warning(
-                '%s is on a file system without locks: see to it yourself that one %s at a time writes there',
-                self.path, self._kind)
+            file.close()
+            raise self._cannot_write(error) from error
         self._lock = file
 
     def release(self) -> None:

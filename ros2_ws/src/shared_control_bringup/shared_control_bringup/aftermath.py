@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Callable
 
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
@@ -16,10 +17,15 @@ from shared_control_sim.local_plant import LocalPlant
 
 
 class _Progress(Callbacks):
-    """A bar on a terminal."""
+    """A bar on a terminal; asks at every step whether to go on."""
 
-    def __init__(self, episodes: int):
+    def __init__(self, episodes: int, attend: Callable[[], None]):
         self._episodes = episodes
+        self._attend = attend
+
+    def stepped(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._attend()
 
     def episode_tested(self, episode: Episode) -> None:
         if sys.stdout.isatty():
@@ -27,12 +33,16 @@ class _Progress(Callbacks):
             print(f'\rtesting the robot alone [{bar}]', end='' if episode.number < self._episodes else '\n', flush=True)
 
 
-def test_policy(folder: SessionFolder, episodes: int) -> None:
-    """Test the session's policy alone, in this process, which equals the graph (tests/test_parity.py)."""
+def test_policy(folder: SessionFolder, episodes: int, attend: Callable[[], None]) -> None:
+    """Test the session's policy alone, in this process, which equals the graph (tests/test_parity.py).
+
+    ``attend`` is called at every step; it may raise to break the test off, which then leaves nothing behind.
+    """
+    attend()
     learner = load_policy(folder.policy)
     env = SharedControlEnv(LocalPlant(learner.task), as_tested(learner.task))
     try:
-        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(episodes)), folder.test)
+        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(episodes, attend)), folder.test)
     finally:
         env.close()
 

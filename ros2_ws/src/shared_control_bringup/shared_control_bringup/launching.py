@@ -11,6 +11,7 @@ from launch.actions import (
     RegisterEventHandler,
     SetEnvironmentVariable,
     Shutdown,
+    UnsetEnvironmentVariable,
 )
 from launch.conditions import IfCondition
 from launch.event_handlers import OnProcessExit
@@ -44,10 +45,11 @@ def view_argument(default: str = 'false') -> DeclareLaunchArgument:
         'view', default_value=default, description='Also start robot_state_publisher, robot_view_node and RViz.')
 
 
-def environment() -> list[SetEnvironmentVariable]:
-    """What :func:`shared_control_ros.processes.node_environment` adds to the environment of the shell."""
-    return [SetEnvironmentVariable(name, value) for name, value in node_environment().items()
-            if os.environ.get(name) != value]
+def environment() -> list[Action]:
+    """What :func:`shared_control_ros.processes.node_environment` changes in the environment of the shell."""
+    wanted = node_environment()
+    return [*(SetEnvironmentVariable(name, value) for name, value in wanted.items() if os.environ.get(name) != value),
+            *(UnsetEnvironmentVariable(name) for name in os.environ.keys() - wanted.keys())]
 
 
 def graph_node(name: str, *, parameters: dict[str, Any] | None = None, **options: Any) -> Node:

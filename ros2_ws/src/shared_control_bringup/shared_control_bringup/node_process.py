@@ -87,6 +87,11 @@ class NodeProcess:
         else:
             os.nice(NICENESS)
 
+    @property
+    def is_starting(self) -> bool:
+        """Whether it has neither said that it is ready nor ended."""
+        return self._ready_pipe is not None
+
     def wait_ready(self, seconds: float) -> bool:
         """Wait until it says that it is ready, has ended, or the time is over; whether it is ready."""
         if self._ready_pipe is None or not select.select([self._ready_pipe], [], [], seconds)[0]:

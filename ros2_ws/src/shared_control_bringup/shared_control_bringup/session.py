@@ -5,6 +5,7 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.task import RECORD
@@ -13,6 +14,8 @@ from shared_control_records.session.folder import SessionFolder
 
 from . import parameters as ros_parameters
 from .graph import overrides
+from .interrupts import Interrupts
+from .neighbours import Neighbours
 from .options import add_options, given_settings, refuse_options_of_new_sessions
 from .page import Page
 from .settings import Settings
@@ -35,32 +38,44 @@ def run(args: argparse.Namespace) -> int:
     """
     earlier = None if args.resume is None else SessionFolder.open(args.resume)
     settings = _new_settings(args) if earlier is None else _resumed_settings(args, earlier)
+    if earlier is not None and _is_taught(settings, earlier, given_settings(args)):
+        return _test_only(settings, earlier)
     params_file = getattr(args, 'params_file', ros_parameters.DEFAULTS) if earlier is None else earlier.given_parameters
     parameters = ros_parameters.load(params_file)
     given_parameters = params_file.read_bytes()
     if settings.tutor == 'keyboard' and not _has_terminal():
         raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
     shows_screen = _has_terminal() and settings.screen and settings.tutor != 'page'
-    page = Page.choose(settings, parameters)
+    path = earlier.path if earlier else getattr(args, 'output', None) or (
+        Path('out/sessions') / time.strftime('%Y-%m-%d_%H-%M-%S'))
+    with Neighbours() as neighbours:
+        page = Page.choose(settings, parameters)
+        served = settings if page is None else replace(settings, page=(page.host, page.port))
+        parameters = ros_parameters.lay_over(parameters, overrides(
+            served, path.expanduser().absolute(), shows_screen))
+        neighbours.refuse()
 
     # Nothing is left to be refused but the folder itself.
-    if earlier is None:
-        path = getattr(args, 'output', None) or Path('out/sessions') / time.strftime('%Y-%m-%d_%H-%M-%S')
-        folder = SessionFolder.create(path, hasattr(args, 'overwrite'), settings.to_json())
-        folder.given_parameters.write_bytes(given_parameters)
-    else:
-        folder = earlier
+    with Interrupts() as interrupts:
+        if earlier is None:
+            folder = SessionFolder.create(path, hasattr(args, 'overwrite'), settings.to_json())
+            folder.given_parameters.write_bytes(given_parameters)
+        else:
+            folder = earlier
+            folder.claim()
+        ros_parameters.save(parameters, folder.parameters)
+        print(f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
+        end, restarts = _teach(settings, folder, shows_screen, page, interrupts)
+        return _report(folder, end, restarts, settings.test_episodes, interrupts).value
+
+
+def _test_only(settings: Settings, folder: SessionFolder) -> int:
+    """Go on with a session whose teaching is over; the exit code."""
+    with Interrupts() as interrupts:
         folder.claim()
         folder.write_settings(settings.to_json())
-    if page is not None:
-        settings = replace(settings, page=(page.host, page.port))
-    ros_parameters.save(
-        ros_parameters.lay_over(parameters, overrides(settings, folder.path, shows_screen)), folder.parameters)
-
-    print(f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
-    end, restarts = teach(folder, settings.tutor, shows_screen, page)
-    _report(folder, end, restarts, settings.test_episodes)
-    return end.value
+        print(f'Session in {folder.path}: the teaching is over, the robot is tested.', flush=True)
+        return _report(folder, End.DONE, _earlier_restarts(folder), settings.test_episodes, interrupts).value
 
 
 def _new_settings(args: argparse.Namespace) -> Settings:
@@ -80,23 +95,60 @@ def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settin
     return settings.resumed_with(given_settings(args)).resolved()
 
 
-def _report(folder: SessionFolder, end: End, restarts: int, test_episodes: int) -> None:
-    """Test the policy, complete the bag, write the report, and tell what came of it."""
+def _is_taught(settings: Settings, folder: SessionFolder, given: dict[str, Any]) -> bool:
+    """Whether an earlier session is to go on with its test: that was broken off, or another one is asked for."""
+    return settings.taught and (set(given) <= {'test_episodes'} if given else not folder.test.exists())
+
+
+def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: Page | None,
+           interrupts: Interrupts) -> tuple[End, int]:
+    """Teach, and keep in the folder whether that came to its end; how it ended, and restarts of nodes in all."""
+    earlier_restarts = _earlier_restarts(folder)
+    folder.write_settings(replace(settings, taught=False).to_json())
+    end, restarts = teach(folder, settings.tutor, shows_screen, page, interrupts)
+    times = [path.stat().st_mtime_ns for path in (folder.test, folder.policy) if path.exists()]
+    if times != sorted(times, reverse=True):
+        folder.test.unlink()  # the policy has learned since
+    folder.write_settings(replace(settings, taught=end is End.DONE).to_json())
+    return end, restarts + earlier_restarts
+
+
+def _earlier_restarts(folder: SessionFolder) -> int:
+    """Restarts of nodes in the part of the session that was reported before."""
+    return (folder.read_json(folder.summary) or {}).get('restarts') or 0
+
+
+def _report(folder: SessionFolder, end: End, restarts: int, test_episodes: int, interrupts: Interrupts) -> End:
+    """Test the policy, complete the bag, write the report, and print what came of it; how the session ended."""
     # Imported late: torch and matplotlib take seconds, and the person wants to begin.
     from shared_control_records.session.report import write_report
 
     from .aftermath import describe_policy, tell_summary, test_policy
-    if folder.bag.exists():
-        recover(folder.bag)
-    if end is not End.FAILED:
-        describe_policy(folder)
-    if end is End.DONE and test_episodes:
-        test_policy(folder, test_episodes)
-    if folder.bag.exists() and any(folder.bag.glob('*.mcap')):
-        annotate(folder.bag, RECORD, bag_metadata.pack(folder, restarts))
-    tell_summary(folder, write_report(folder, restarts))
-    if end is not End.DONE:
-        print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}')
+    try:
+        if end is not End.FAILED:
+            describe_policy(folder)
+        if end is End.DONE and test_episodes:
+            try:
+                test_policy(folder, test_episodes, interrupts.check)
+            except KeyboardInterrupt:
+                end = End.STOPPED
+        _complete_bag(folder, restarts)
+        tell_summary(folder, write_report(folder, restarts))
+    finally:
+        if end is not End.DONE:
+            print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)
+    return end
+
+
+def _complete_bag(folder: SessionFolder, restarts: int) -> None:
+    """Finish what a killed recorder left, and put the rest of the folder into the bag; the report needs neither."""
+    try:
+        if folder.bag.exists():
+            recover(folder.bag)
+        if any(folder.bag.glob('*.mcap')):
+            annotate(folder.bag, RECORD, bag_metadata.pack(folder, restarts))
+    except OSError as error:
+        print(f'shared-control: {error}', file=sys.stderr)
 
 
 def _has_terminal() -> bool:

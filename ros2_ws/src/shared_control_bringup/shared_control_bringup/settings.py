@@ -44,6 +44,8 @@ class Settings:
     """Whether to show the lesson in the terminal."""
     earlier_tutors: tuple[str, ...] = ()
     """Who taught the earlier parts of a session that went on with another tutor, as settings.json names them."""
+    taught: bool = False
+    """Whether the teaching came to its end, so that only the test may be left to do."""
 
     def __post_init__(self) -> None:
         for option, value, choices in (('--task', self.task, ('', *names(TASKS))),

@@ -7,6 +7,7 @@ from .node_process import UNUSABLE, NodeProcess
 
 MAX_RESTARTS_A_MINUTE = 5
 READY_SECONDS = 10.0
+ATTEND_SECONDS = 0.1
 STOP_SECONDS = 10.0
 
 
@@ -26,20 +27,27 @@ class Supervisor:
         leader: the node whose clean exit ends the session.
         say: told of every restart.
         stopper: the node whose clean exit stops the session.
+        attend: called again and again while nodes start; may raise to give up.
     """
 
-    def __init__(self, nodes: list[NodeProcess], leader: str, say: Callable[[str], None], stopper: str = ''):
+    def __init__(self, nodes: list[NodeProcess], leader: str, say: Callable[[str], None], stopper: str = '',
+                 attend: Callable[[], None] = lambda: None):
         self._nodes = nodes
         self._leader = leader
         self._stopper = stopper
         self._say = say
+        self._attend = attend
         self._deaths: dict[str, list[float]] = {}
 
     def start(self) -> None:
         """Start the nodes, one after the other is ready: who listens is there before who speaks."""
         for node in self._nodes:
+            self._attend()
             node.start()
-            node.wait_ready(READY_SECONDS)
+            deadline = time.monotonic() + READY_SECONDS
+            while node.is_starting and time.monotonic() < deadline:
+                node.wait_ready(ATTEND_SECONDS)
+                self._attend()
 
     def poll(self) -> bool:
         """Look after the nodes once; False when the leader has finished.

@@ -1,6 +1,5 @@
 """Runs the graph of a session until the teaching is over."""
 
-import signal
 import sys
 import time
 from enum import Enum
@@ -9,6 +8,7 @@ from shared_control_records.session.folder import SessionFolder
 
 from . import parameters as ros_parameters
 from .graph import Role, named, nodes_of
+from .interrupts import Interrupts
 from .node_process import NodeProcess
 from .page import Page
 from .progress import EpisodePrinter
@@ -25,7 +25,8 @@ class End(Enum):
     STOPPED = 130
 
 
-def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | None) -> tuple[End, int]:
+def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | None,
+          interrupts: Interrupts) -> tuple[End, int]:
     """Run the graph until the agent is done or somebody stops it.
 
     Args:
@@ -33,6 +34,7 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
         tutor: who teaches; decides which nodes take part.
         shows_screen: whether the lesson is shown in the terminal.
         page: whose address is printed when it can be opened.
+        interrupts: how somebody stops it from the terminal, or by a signal.
 
     Returns:
         How it ended, and how often nodes were started again.
@@ -51,15 +53,15 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
             print(text, flush=True)
 
     (leader,), (stopper,) = named(Role.LEADER), named(Role.STOPPER)
-    supervisor = Supervisor(nodes, leader=leader, stopper=stopper, say=say)
+    supervisor = Supervisor(nodes, leader=leader, stopper=stopper, say=say, attend=interrupts.check)
     episodes = EpisodePrinter(folder.episodes, say)
-    previous = {number: signal.signal(number, _interrupt) for number in (signal.SIGTERM, signal.SIGHUP)}
     error: SessionError | None = None
     try:
         supervisor.start()
         if page:
             print(f'\n    Teach here: {page.address}\n', flush=True)  # with the token, hence not into the log
         while supervisor.poll():
+            interrupts.check()
             episodes.poll()
             time.sleep(POLL_SECONDS)
         end = End.DONE
@@ -68,17 +70,10 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     except SessionError as problem:
         end, error = End.FAILED, problem
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
         supervisor.stop()
         episodes.poll()
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        for number, handler in previous.items():
-            signal.signal(number, handler)
         log.close()
     if error is not None:
         print(f'shared-control: {error}', file=sys.stderr)
     return end, supervisor.restarts
 
-
-def _interrupt(*_: object) -> None:
-    raise KeyboardInterrupt

@@ -1,6 +1,7 @@
 """What ``shared-control session`` checks, writes and removes before and beside the graph, which is left out here."""
 
 import json
+import os
 
 import pytest
 import yaml
@@ -11,20 +12,36 @@ from shared_control_bringup.teaching import End
 from shared_control_records.session.folder import SessionFolder
 
 
+class NoNeighbours:
+    """A domain that nobody else is in; test_neighbours.py looks at real ones."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def refuse(self):
+        pass
+
+
 @pytest.fixture
 def session(monkeypatch):
     """``session(*arguments)``: run the command with a graph that is done at once; its exit code."""
-    def teach(folder, tutor, shows_screen, page):
+    def teach(folder, tutor, shows_screen, page, interrupts):
         run.page = page
+        run.taught += 1
         folder.release()
-        return End.DONE, 0
+        return run.end, 0
 
     def run(*arguments):
         monkeypatch.setattr('sys.argv', ['shared-control', 'session', *map(str, arguments)])
         return main()
 
     monkeypatch.setattr(command, 'teach', teach)
-    monkeypatch.setattr(command, '_report', lambda *_: None)
+    monkeypatch.setattr(command, 'Neighbours', NoNeighbours)
+    monkeypatch.setattr(command, '_report', lambda folder, end, *_: end)
+    run.end, run.taught = End.DONE, 0
     return run
 
 
@@ -139,13 +156,45 @@ def test_what_cannot_change_when_a_session_goes_on_is_refused(session, tmp_path,
     assert content(folder) == before
 
 
+def test_a_session_that_is_taught_goes_on_with_its_test_alone(session, tmp_path, capsys):
+    folder = SessionFolder(tmp_path / 'session')
+    session.end = End.STOPPED
+    assert session('--tutor', 'sim', '--output', folder.path) == 130
+    session.end = End.DONE
+    assert session('--resume', folder.path) == 0, 'the teaching, which was broken off'
+    assert session.taught == 2
+    assert session('--resume', folder.path) == 0, 'the test, which is missing'
+    assert 'the teaching is over' in capsys.readouterr().out and session.taught == 2
+    folder.test.write_text('{}')
+    assert session('--resume', folder.path, '--test-episodes', 3) == 0, 'another test'
+    assert session.taught == 2
+    assert session('--resume', folder.path) == 0, 'nothing else is left to do: more teaching'
+    assert session.taught == 3
+    assert session('--resume', folder.path, '--episodes', 50) == 0
+    assert session.taught == 4
+
+
+def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):
+    folder = SessionFolder(tmp_path / 'session')
+    assert session('--tutor', 'sim', '--output', folder.path) == 0
+    folder.policy.write_bytes(b'')
+    folder.test.write_text('{}')
+    assert session('--resume', folder.path) == 0
+    assert folder.test.exists(), 'nothing was learned since'
+    later = folder.test.stat().st_mtime_ns + 1_000_000_000
+    os.utime(folder.policy, ns=(later, later))
+    assert session('--resume', folder.path) == 0
+    assert not folder.test.exists()
+
+
 @pytest.mark.parametrize(('name', 'text', 'said'), [
     ('settings.json', None, 'settings.json is missing'),
     ('settings.json', '{"episodes": "many"}', 'settings.json: a value has the wrong type'),
     ('given_parameters.yaml', None, 'given_parameters.yaml')])
 def test_a_session_whose_files_are_damaged_does_not_go_on(session, tmp_path, capsys, name, text, said):
     folder = tmp_path / 'session'
-    assert session('--tutor', 'sim', '--output', folder) == 0
+    session.end = End.STOPPED
+    assert session('--tutor', 'sim', '--output', folder) == 130
     (folder / 'bag').mkdir()
     if text is None:
         (folder / name).unlink()

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import rclpy
 from rclpy.exceptions import ROSInterruptException
+from rclpy.logging import get_logging_directory
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
@@ -52,8 +53,11 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
         print((sys.modules[make.__module__].__doc__ or '').strip())
         print('\nParameters: --ros-args -p NAME:=VALUE or --ros-args --params-file FILE; the README lists them.')
         return 0
-    os.environ.update(node_environment())  # a node that was started by hand keeps to this machine, too
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    environment = node_environment()  # a node that was started by hand keeps to this machine, too
+    for variable in os.environ.keys() - environment.keys():
+        del os.environ[variable]
+    os.environ.update(environment)
+    rclpy.init(args=[*args, *_log_arguments()], signal_handler_options=SignalHandlerOptions.NO)
     stop = Stop()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:  # nohup
@@ -76,3 +80,13 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
             runnable.close()
             runnable.node.destroy_node()
         rclpy.try_shutdown()
+
+
+def _log_arguments() -> list[str]:
+    """Arguments that keep ROS from writing log files where it cannot, which would end the node."""
+    try:
+        get_logging_directory().mkdir(parents=True, exist_ok=True)
+    except (RuntimeError, OSError) as error:  # without HOME the first
+        print(f'no log file is written ({error}); ROS_LOG_DIR names a folder for it', file=sys.stderr)
+        return ['--ros-args', '--disable-external-lib-logs']
+    return []

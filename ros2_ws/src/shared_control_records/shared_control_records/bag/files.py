@@ -1,10 +1,11 @@
 """Which files a bag folder holds, and who may write them."""
 
-import fcntl
 import os
 import re
 from pathlib import Path
 from typing import IO
+
+from shared_control import files
 
 _NUMBER = re.compile(r'_(\d+)\.mcap$')
 
@@ -35,7 +36,7 @@ def lock(file: IO[bytes], path: Path) -> None:
         BagError: another process is writing the file, or has removed or replaced it.
     """
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        files.lock(file)
     except BlockingIOError as error:
         raise BagError(f'{path} is being recorded by another process') from error
     if not os.fstat(file.fileno()).st_nlink:

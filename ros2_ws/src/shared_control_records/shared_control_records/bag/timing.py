@@ -1,6 +1,7 @@
 """How fast a session ran, from what the simulator reports of itself."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from .reader import Bag
 from .recorded import Status
@@ -30,8 +31,9 @@ def simulator_runs(bag: Bag) -> list[Status]:
     statuses = sorted(
         (status for reports in bag.statuses.values() for status in reports
          if all(status.number(key) is not None for key in OF_A_SIMULATOR)), key=lambda status: status.received_ns)
-    return [status for status, after in zip(statuses, [*statuses[1:], None], strict=True)
-            if after is None or (after.number('ticks') or 0.0) < (status.number('ticks') or 0.0)]
+    ends = [status for status, after in pairwise(statuses)
+            if (after.number('ticks') or 0.0) < (status.number('ticks') or 0.0)]
+    return ends + statuses[-1:]
 
 
 def timing_of(bag: Bag) -> Timing | None:

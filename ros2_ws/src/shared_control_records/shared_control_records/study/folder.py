@@ -1,10 +1,9 @@
 """The folder of a study: the plan, a folder for each run, and one for each real participant."""
 
-import fcntl
 from pathlib import Path
 from typing import IO
 
-from shared_control.files import write_atomically
+from shared_control.files import lock, write_atomically
 
 from .plan import Job, Participant, Plan, load_plan
 
@@ -62,7 +61,7 @@ class StudyFolder:
             claimed = self.path if number is None else self.person(plan.participant(number))
             claimed.mkdir(parents=True, exist_ok=True)
             self._lock = (claimed / '.lock').open('ab')
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(self._lock)
             if not self.plan.exists():
                 write_atomically(self.plan, text)
         except BlockingIOError as error:

@@ -1,0 +1,50 @@
+"""Output that nobody reads any more: ``| head``, or a terminal that has hung up."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TextIO
+
+
+class _Lossy:
+    """A text stream that goes on as if nothing had happened when its reader is gone."""
+
+    def __init__(self, stream: TextIO):
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        with self._without_reader():
+            self._stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        with self._without_reader():
+            self._stream.flush()
+
+    @contextmanager
+    def _without_reader(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError:  # EPIPE of a pipe, EIO of a terminal
+            # What is still in the buffer, and what child processes write, goes the same way.
+            with suppress(OSError, ValueError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, self._stream.fileno())
+                os.close(nowhere)
+
+
+@contextmanager
+def lossy_output() -> Iterator[None]:
+    """Let stdout and stderr lose what nobody reads, so that no work is lost with it."""
+    streams = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (_Lossy(stream) for stream in streams)  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+        sys.stdout, sys.stderr = streams

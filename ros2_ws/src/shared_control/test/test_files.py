@@ -1,0 +1,57 @@
+"""Files on file systems that lack something, and output that nobody reads any more."""
+
+import errno
+import fcntl
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from shared_control.files import lock, write_atomically
+
+LATE = """
+import sys, time
+from shared_control.streams import lossy_output
+with lossy_output():
+    print('first', flush=True)
+    sys.stdin.readline()
+    print('nobody reads this', flush=True)
+    print('nor this')
+    print('nor that', file=sys.stderr)
+open(sys.argv[1], 'w').write('the work is done')
+"""
+
+
+def test_a_file_is_written_where_modes_cannot_be_set(tmp_path, monkeypatch):
+    def no_modes(*_args, **_options):
+        raise PermissionError(errno.EPERM, 'Operation not permitted')
+
+    monkeypatch.setattr(Path, 'chmod', no_modes)
+    write_atomically(tmp_path / 'file', b'content')
+    assert (tmp_path / 'file').read_bytes() == b'content' and len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.parametrize('number', [errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP])
+def test_a_file_system_without_locks_is_known_for_it(tmp_path, monkeypatch, number):
+    with (tmp_path / 'file').open('wb') as file, (tmp_path / 'file').open('wb') as other:
+        assert lock(file)
+        with pytest.raises(BlockingIOError):
+            lock(other)
+
+        def no_locks(*_):
+            raise OSError(number, 'no locks here')
+
+        monkeypatch.setattr(fcntl, 'flock', no_locks)
+        assert not lock(other)
+
+
+@pytest.mark.parametrize('lost', ['stdout', 'stderr'])
+def test_a_lost_reader_costs_no_work(tmp_path, lost):
+    pipes = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE}
+    command = subprocess.Popen([sys.executable, '-c', LATE, tmp_path / 'done'], stdin=subprocess.PIPE, **pipes)
+    assert command.stdout.readline() == b'first\n'
+    getattr(command, lost).close()
+    command.stdin.write(b'\n')
+    command.stdin.close()
+    assert command.wait(60) == 0
+    assert (tmp_path / 'done').read_text() == 'the work is done'
