@@ -122,5 +122,5 @@ class Settings:
             values |= {'tutor': 'sim', 'profile': tutor.removeprefix(SIMULATED)}
         try:
             return cls(**values)
-        except (TypeError, IndexError) as error:
+        except (TypeError, LookupError) as error:
             raise ValueError(f'a value has the wrong type: {error}') from error

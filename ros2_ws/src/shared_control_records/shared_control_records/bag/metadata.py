@@ -21,13 +21,20 @@ def blank_metadata() -> str:
 
 
 def read_summary(path: Path) -> Summary | None:
-    """The index at the end of an MCAP file, or None when the file was left unfinished."""
+    """The index at the end of an MCAP file, or None when the file was left unfinished.
+
+    Raises:
+        BagError: the file has an end, and is damaged.
+    """
     with path.open('rb') as file:
         file.seek(max(len(MCAP0_MAGIC), path.stat().st_size - len(MCAP0_MAGIC)))
         if file.read() != MCAP0_MAGIC:
             return None
         file.seek(0)
-        return make_reader(file).get_summary()
+        try:
+            return make_reader(file).get_summary()
+        except Exception as error:  # mcap raises errors of many kinds
+            raise BagError(f'{path} is damaged: {error}; it is left as it is, move it away') from error
 
 
 def lists_all_files(bag: Path) -> bool:

@@ -1,0 +1,256 @@
+"""What comes from outside is used, or refused by the error that the docstring names: files and messages by chance."""
+
+import json
+import math
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import yaml
+from geometry_msgs.msg import WrenchStamped
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+from shared_control.keys import HUMAN_MOMENT_LIMIT, Key, KeyPresses
+from shared_control.robot.spec_file import RobotFileError, load_robot, panda
+from shared_control.tasks.balance import BALANCE
+from shared_control.teaching.key_device import KeyDevice
+from shared_control_bringup import parameters
+from shared_control_bringup.settings import Settings
+from shared_control_learning.policy_file import PolicyFileError, load_policy, save_policy
+from shared_control_learning.presets import preset
+from shared_control_learning.training import TrainingError, TrainingRun, read_run
+from shared_control_records.bag import BagError, recover
+from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_records.bag.writer import BagWriter
+from shared_control_records.study.plan import PlanError, load_plan
+from shared_control_ros.wrenches import moment_of
+from shared_control_testing.sessions import STORE, lesson, record
+from teleop_key_node.keyboard import Keyboard
+from teleop_key_node.sources import Sources
+from torque_ctrl_node.joint_states import JointStateReader
+
+QUICK = settings(max_examples=150, deadline=None, derandomize=True, database=None,
+                 suppress_health_check=[HealthCheck.function_scoped_fixture])
+SLOW = settings(QUICK, max_examples=25)
+
+SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=20)
+JSON = st.recursive(SCALARS, lambda inner: (
+    st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=12), inner, max_size=4)), max_leaves=12)
+INT32 = st.integers(-2**31, 2**31 - 1)
+
+
+def changed(content, data):
+    """A copy of a JSON object in which something has another value, another type, another name, or is gone."""
+    content = json.loads(json.dumps(content))
+    where = content
+    while True:
+        assume(where)
+        key = data.draw(st.sampled_from(list(where) if isinstance(where, dict) else range(len(where))))
+        if isinstance(where[key], dict | list) and where[key] and data.draw(st.booleans()):
+            where = where[key]
+            continue
+        if data.draw(st.integers(0, 4)) == 0:
+            del where[key]
+        else:
+            where[key] = data.draw(JSON)
+        return content
+
+
+@contextmanager
+def refused_by(*errors, naming):
+    """Nothing is raised, or one of these errors, whose message has ``naming`` in it and no escape sequence."""
+    try:
+        yield
+    except errors as error:
+        told = str(error)
+    else:
+        return
+    assert str(naming) in told
+    assert '\x1b' not in told
+
+
+def garbled(whole: bytes, data) -> bytes:
+    """The bytes cut short, or with some of them changed."""
+    raw = bytearray(whole)
+    for _ in range(data.draw(st.integers(0, 4))):
+        raw[data.draw(st.integers(0, len(raw) - 1))] = data.draw(st.integers(0, 255))
+    return bytes(raw[:data.draw(st.integers(0, len(raw)))] if data.draw(st.booleans()) else raw)
+
+
+@QUICK
+@given(st.lists(st.lists(INT32, max_size=8), max_size=8))
+def test_buttons(states):
+    presses = KeyPresses()
+    for buttons in states:
+        try:
+            pressed = presses.update(buttons)
+        except ValueError:
+            assert len(buttons) < 3 or not set(buttons[:len(Key)]) <= {0, 1}
+        else:
+            assert all(buttons[key] == 1 for key in pressed)
+
+
+@QUICK
+@given(st.lists(st.tuples(st.sampled_from('ab'), st.lists(st.floats(width=32), max_size=4),
+                          st.lists(st.integers(-1, 2), max_size=6), st.integers(0, 2**62))))
+def test_what_any_source_of_keys_sends_is_a_moment_within_the_limit(states):
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    for source, axes, buttons, now_ns in states:
+        with suppress(ValueError):
+            sources.hear(source, axes, buttons, now_ns)
+        sources.drop_silent(now_ns)
+        assert np.abs(sources.moment).max() <= HUMAN_MOMENT_LIMIT
+
+
+@QUICK
+@given(st.binary(max_size=60), st.lists(st.integers(0, 60), max_size=4))
+def test_bytes_of_a_terminal_mean_the_same_in_any_pieces(typed, cuts):
+    places = [0, *sorted(min(cut, len(typed)) for cut in cuts), len(typed)]
+    keyboard = Keyboard()
+    in_pieces = [stroke for first, end in pairwise(places) for stroke in keyboard.strokes(typed[first:end])]
+    assert in_pieces == Keyboard().strokes(typed)
+
+
+@QUICK
+@given(st.text(max_size=15), st.floats(), st.floats())
+def test_wrenches(frame, m_x, m_y):
+    wrench = WrenchStamped()
+    wrench.header.frame_id = frame.replace('\0', '').encode('utf-8', 'ignore').decode()
+    wrench.wrench.torque.x, wrench.wrench.torque.y = m_x, m_y
+    try:
+        moment = moment_of(wrench, frame='' if not frame else 'panda_link0')
+    except ValueError:
+        assert frame or not math.isfinite(m_y)
+    else:
+        assert np.isfinite(moment).all()
+
+
+@QUICK
+@given(st.data())
+def test_joint_states(data):
+    spec = panda()
+    whole = serialize_message(JointState(
+        name=list(spec.joints), position=spec.home.tolist(), velocity=[0.0] * spec.dof, effort=[0.0] * spec.dof))
+    reader = JointStateReader(spec)
+    reader.read(whole)
+    try:
+        values = reader.read(garbled(whole, data))
+    except ValueError:
+        return
+    assert all(value.shape == (spec.dof,) and np.isfinite(value).all() for value in values)
+
+
+@pytest.fixture(scope='module')
+def scratch(tmp_path_factory):
+    return tmp_path_factory.mktemp('hostile')
+
+
+PLAN = {'title': 'A study', 'seed': 1, 'conditions': {'a': {'preset': 'coached'}, 'b': {'preset': 'autonomous'}},
+        'simulated': {'participants': 2, 'tutors': ['expert']}, 'episodes': 3}
+
+
+@QUICK
+@given(st.data())
+def test_plans(scratch, data):
+    path = scratch / 'plan.yaml'
+    text = yaml.safe_dump(changed(PLAN, data)) if data.draw(st.booleans()) else data.draw(st.text(max_size=80))
+    path.write_text(text.encode('utf-8', 'replace').decode())
+    with refused_by(PlanError, naming=path):
+        assert load_plan(path).jobs
+
+
+@QUICK
+@given(st.data())
+def test_parameter_files(scratch, data):
+    path = scratch / 'parameters.yaml'
+    content = {'panda_sim_node': {'ros__parameters': {'paced': False}},
+               '/**': {'ros__parameters': {'use_sim_time': True}}}
+    text = yaml.safe_dump(changed(content, data)) if data.draw(st.booleans()) else data.draw(st.text(max_size=80))
+    path.write_text(text.encode('utf-8', 'replace').decode())
+    with refused_by(ValueError, naming=path):
+        assert parameters.load(path)
+
+
+@QUICK
+@given(st.data())
+def test_robot_files(scratch, data):
+    path = scratch / 'robot.yaml'
+    path.write_bytes(garbled(yaml.safe_dump({'urdf': 'x.urdf', 'joints': ['a'], 'base_frame': 'b'}).encode(), data))
+    with pytest.raises(RobotFileError):
+        load_robot(str(path))
+
+
+@SLOW
+@given(st.data())
+def test_settings_of_a_session(data):
+    try:
+        found = Settings.from_json(changed(Settings(tutor='sim').to_json(), data))
+    except ValueError:
+        return
+    Settings.from_json(json.loads(json.dumps(found.to_json())))
+
+
+@QUICK
+@given(st.data())
+def test_runs(scratch, data):
+    whole = asdict(TrainingRun(
+        'coached', {'name': 'expert'}, 0, tests=[(1, True)], returns=[1.0], intervention_rates=[0.5]))
+    (scratch / 'run.json').write_text(json.dumps(changed(whole, data)))
+    with refused_by(TrainingError, naming='run.json'):
+        run = read_run(scratch)
+        assert run.skilled is None or run.skilled >= 0
+
+
+@pytest.fixture(scope='module')
+def policy(scratch):
+    path = scratch / 'whole.safetensors'
+    save_policy(preset('coached').make(), path)
+    return path.read_bytes()
+
+
+@QUICK
+@given(st.data())
+def test_policies(scratch, policy, data):
+    path = scratch / 'policy.safetensors'
+    size = int.from_bytes(policy[:8], 'little')
+    if data.draw(st.booleans()):
+        header = json.loads(policy[8:8 + size])
+        name, = header['__metadata__']
+        header['__metadata__'][name] = json.dumps(changed(json.loads(header['__metadata__'][name]), data))
+        text = json.dumps(header).encode()
+        path.write_bytes(len(text).to_bytes(8, 'little') + text + policy[8 + size:])
+    else:
+        path.write_bytes(garbled(policy, data))
+    with refused_by(PolicyFileError, naming=path):
+        learner = load_policy(path)
+        action = learner.act(np.zeros(learner.task.observation_size, np.float32))
+        assert np.isfinite(action).all()
+        assert np.abs(action).max() <= 1.0
+
+
+@pytest.fixture(scope='module')
+def bag(scratch):
+    """A bag as the recorder writes it: its file, and the bytes of that."""
+    folder = scratch / 'bag'
+    writer = BagWriter(folder)
+    for topic, received_ns, content in sorted(record([lesson(steps=20)]).messages, key=lambda entry: entry[1]):
+        channel = writer.add_topic(topic.full_name, topic.type, STORE.generate_msgdef(topic.type)[0], '', '[]')
+        writer.write(channel, bytes(STORE.serialize_cdr(content, topic.type)), received_ns, received_ns)
+    writer.finish()
+    file, = folder.glob('*.mcap')
+    content = file.read_bytes()
+    return lambda: (file, content)  # a function, since Hypothesis prints the values of fixtures
+
+
+@SLOW
+@given(st.data())
+def test_bags(bag, data):
+    file, whole = bag()
+    file.write_bytes(garbled(whole, data))
+    for attempt in (read_bag, recover, read_bag):
+        with refused_by(BagReadError, BagError, naming=file.parent):
+            attempt(file.parent)
