@@ -1,4 +1,4 @@
-"""Writing files so that a reader never sees half of one, and by one process at a time."""
+"""Where nodes keep what outlives them; files written as a whole, and by one process at a time."""
 
 import errno
 import fcntl
@@ -10,6 +10,11 @@ from typing import IO
 
 _CANNOT_LOCK = (errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EOPNOTSUPP, errno.EINVAL)
 """What ``flock`` gives on file systems that have none (some Lustre and NFS mounts)."""
+
+
+def state_folder() -> Path:
+    """The folder for what outlives a node, in ``$ROS_HOME`` (``~/.ros``); it may not exist, nor be writable."""
+    return Path(os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')) / 'shared_control'
 
 
 def write_atomically(path: Path, content: bytes) -> None:

@@ -1,7 +1,9 @@
-"""Processes that do not outlive the one that started them."""
+"""Processes and the one that started them."""
 
 import ctypes
+import os
 import signal
+from pathlib import Path
 
 
 def leave_with_the_parent() -> None:
@@ -11,3 +13,16 @@ def leave_with_the_parent() -> None:
     """
     set_parent_death_signal = 1
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)
+
+
+def starter() -> str:
+    """The process that started this one, by number and time of its start, since numbers are used again.
+
+    Whatever is started again by a supervisor, or by ROS' launch, finds the same.
+    """
+    parent = os.getppid()
+    try:
+        started = Path(f'/proc/{parent}/stat').read_text().rpartition(')')[2].split()[19]
+    except (OSError, IndexError):
+        started = ''
+    return f'{parent} {started}'

@@ -25,12 +25,13 @@ class Browser:
 
     Args:
         width, height: of its window, pixels.
+        webgl: whether it can draw in 3D.
 
     Raises:
         FileNotFoundError: there is no Chromium, or no chromedriver.
     """
 
-    def __init__(self, width: int = 1000, height: int = 700):
+    def __init__(self, width: int = 1000, height: int = 700, webgl: bool = True):
         browser = next(filter(None, map(shutil.which, _BROWSERS)), None)
         driver = shutil.which('chromedriver')
         if browser is None or driver is None:
@@ -38,7 +39,8 @@ class Browser:
         self._profile = tempfile.TemporaryDirectory()
         options = ChromeOptions()
         options.binary_location = browser
-        for option in (*_OPTIONS, f'--user-data-dir={self._profile.name}', f'--window-size={width},{height}'):
+        for option in (*_OPTIONS, f'--user-data-dir={self._profile.name}', f'--window-size={width},{height}',
+                       *(() if webgl else ('--disable-3d-apis',))):
             options.add_argument(option)
         options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
         self.driver = Chrome(options=options, service=Service(driver))

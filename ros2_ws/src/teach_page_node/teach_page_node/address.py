@@ -1,6 +1,14 @@
 """Where the page is, and the token that lets people in. Light: who starts the node takes the address from here."""
 
+import base64
+import hashlib
+import hmac
+import os
+import secrets
 import socket
+
+from shared_control.files import state_folder
+from shared_control.processes import starter
 
 LOOPBACK = ('127.0.0.1', 'localhost', '::1')
 TOKEN_VARIABLE = 'SHARED_CONTROL_PAGE_TOKEN'
@@ -10,6 +18,34 @@ TOKEN_VARIABLE = 'SHARED_CONTROL_PAGE_TOKEN'
 def needs_token(host: str) -> bool:
     """Whether a page that listens on ``host`` is open to the network."""
     return host not in LOOPBACK
+
+
+def own_token(port: int) -> str:
+    """A token for the page at a port: the same when whoever has started this process starts it again.
+
+    An address that was opened stays good when the node died and was started anew. It is derived from a secret of this
+    user's, in the folder of ROS; where there can be none, it is made anew at every start.
+    """
+    try:
+        secret = _secret()
+    except OSError:
+        return secrets.token_urlsafe(16)
+    digest = hmac.digest(secret, f'{starter()} {port}'.encode(), hashlib.sha256)
+    return base64.urlsafe_b64encode(digest[:16]).decode().rstrip('=')
+
+
+def _secret() -> bytes:
+    path = state_folder() / 'page_secret'
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), 'wb') as file:
+            file.write(secrets.token_bytes(32))
+    except FileExistsError:
+        pass
+    secret = path.read_bytes()
+    if len(secret) != 32:  # another node is writing it, or the disk was full
+        raise OSError(f'{path} is no secret')
+    return secret
 
 
 def listen(host: str, port: int) -> socket.socket:

@@ -5,6 +5,7 @@ open a WebSocket to it, or get there under a name of its own (DNS rebinding). So
 at, and who opens the server to the network needs a token.
 """
 
+import hashlib
 import secrets
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
@@ -14,8 +15,6 @@ from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from .address import LOOPBACK
-
-COOKIE = 'teach_page_token'
 
 
 class Guard:
@@ -29,6 +28,8 @@ class Guard:
     def __init__(self, app: ASGIApp, token: str | None):
         self._app = app
         self._token = token
+        # Browsers keep one cookie of a name for all ports of a host: each server has a name of its own.
+        self._cookie = f'teach_page_{hashlib.sha256((token or "").encode()).hexdigest()[:12]}'
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Let in or refuse one request."""
@@ -52,9 +53,16 @@ class Guard:
         if origin is not None and urlsplit(origin).netloc != host:
             return f'pages of {origin!r} may not speak to this one'
         if self._token is not None and not any(
-                secrets.compare_digest(given.encode(), self._token.encode()) for given in _tokens(scope, headers)):
+                secrets.compare_digest(given.encode(), self._token.encode()) for given in self._given(scope, headers)):
             return 'the address must end with the ?token=... that the session printed'
         return None
+
+    def _given(self, scope: Scope, headers: Headers) -> list[str]:
+        try:
+            cookie = SimpleCookie(headers.get('cookie', '')).get(self._cookie)
+        except CookieError:
+            cookie = None
+        return _query_tokens(scope) + ([] if cookie is None else [cookie.value])
 
     def _with_cookie(self, scope: Scope, send: Send) -> Send:
         if self._token is None or not _query_tokens(scope):
@@ -63,18 +71,10 @@ class Guard:
         async def send_with_cookie(message: Message) -> None:
             if message['type'] == 'http.response.start':
                 MutableHeaders(scope=message).append(
-                    'set-cookie', f'{COOKIE}={self._token}; HttpOnly; SameSite=Strict; Path=/')
+                    'set-cookie', f'{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/')
             await send(message)
         return send_with_cookie
 
 
 def _query_tokens(scope: Scope) -> list[str]:
     return parse_qs(scope.get('query_string', b'').decode('latin-1')).get('token', [])
-
-
-def _tokens(scope: Scope, headers: Headers) -> list[str]:
-    try:
-        cookie = SimpleCookie(headers.get('cookie', '')).get(COOKIE)
-    except CookieError:
-        cookie = None
-    return _query_tokens(scope) + ([] if cookie is None else [cookie.value])

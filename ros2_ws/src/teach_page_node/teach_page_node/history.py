@@ -1,5 +1,6 @@
 """The episodes so far, for the charts."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +19,10 @@ class History:
         self.shares.append(share)
 
     def message(self) -> dict[str, Any]:
-        """For the browser."""
-        return {'returns': [round(value, 2) for value in self.returns],
-                'shares': [None if value is None else round(value, 4) for value in self.shares]}
+        """For the browser; None for what is not finite, which JSON cannot say."""
+        return {'returns': [_rounded(value, 2) for value in self.returns],
+                'shares': [_rounded(value, 4) for value in self.shares]}
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    return None if value is None or not math.isfinite(value) else round(value, digits)

@@ -15,12 +15,10 @@ from shared_control_ros.watching.scene import Scene
 
 from .history import History
 from .page_requests import PageRequests
-from .picture import Picture
+from .picture import LIT_FOR, Picture
 
 SOURCE = 'page'
 """The frame_id of the page's keys."""
-LIT_FOR = 0.15
-"""A key that was pressed is lit for this long at least, s."""
 NOTICE_FOR = 8.0
 """s"""
 

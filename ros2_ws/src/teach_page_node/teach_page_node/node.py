@@ -26,7 +26,7 @@ class TeachPageNode:
             'and then it needs a token.')
         port = declare(node, 'port', 8088, 'Port to listen on; 0: any that is free.', minimum=0, maximum=65535)
         token = declare(node, 'token', '', 'What the address must end with when the page is open to the network; '
-                        'empty: taken from the environment, or made anew at every start.')
+                        'empty: taken from the environment, or one that stays for whoever starts the node again.')
         frame_rate = declare(
             node, 'frame_rate', 40.0, 'Pictures that are sent.', unit='Hz', minimum=1.0, maximum=100.0)
         self._desk = LiveDesk(node)

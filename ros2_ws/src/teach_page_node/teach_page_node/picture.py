@@ -7,6 +7,9 @@ import numpy as np
 
 from .history import History
 
+LIT_FOR = 0.15
+"""A key that was pressed is lit for this long at least, s."""
+
 
 @dataclass
 class Picture:
@@ -54,13 +57,14 @@ class Picture:
             'q': _rounded(self.q), 'ball': _rounded(self.ball), 'on_tray': _rounded(self.ball_on_tray),
             'pitch': _rounded(self.pitch), 'human': _rounded(self.human), 'agent': _rounded(self.agent),
             'applied': _rounded(self.applied), 'phase': self.phase, 'episode': self.episode,
-            'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share), 'success': self.success,
-            'keys': self.keys, 'hand': self.hand, 'paused': self.paused, 'silent_for': _rounded(self.silent_for),
+            'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share),
+            'success': _rounded(self.success), 'keys': self.keys, 'hand': self.hand,
+            'paused': self.paused, 'silent_for': _rounded(self.silent_for),
             'notice': self.notice, 'time': _rounded(self.time), 'replay': self.replay}
 
 
 def _rounded(value: float | np.ndarray | None) -> Any:
-    """0.1 mm and 0.1 mrad are finer than a screen."""
-    if value is None:
+    """0.1 mm and 0.1 mrad are finer than a screen. None for what is not finite, which JSON cannot say."""
+    if value is None or not np.isfinite(value).all():
         return None
     return [round(float(v), 4) for v in value] if isinstance(value, np.ndarray) else round(float(value), 4)

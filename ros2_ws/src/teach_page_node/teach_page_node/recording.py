@@ -8,8 +8,7 @@ from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series, Wrenches
 
 from .history import History
-from .live import LIT_FOR
-from .picture import Picture
+from .picture import LIT_FOR, Picture
 
 LONGEST_STILL = 2.0
 """As much is played of a longer gap in the recording (between two runs of a session), s."""

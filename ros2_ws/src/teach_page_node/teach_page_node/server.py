@@ -1,7 +1,6 @@
 """The web server of the page: NiceGUI's files, the page, and one WebSocket for pictures and keys."""
 
 import asyncio
-import secrets
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from fastapi import FastAPI, WebSocket
 from fastapi.staticfiles import StaticFiles
 from nicegui import ui
 
-from .address import listen, needs_token, page_address
+from .address import listen, needs_token, own_token, page_address
 from .desk import Desk
 from .guard import Guard
 from .layout import build
@@ -40,7 +39,7 @@ class PageServer:
     def __init__(self, desk: Desk, host: str, port: int, frame_rate: float, token: str = ''):
         self._desk = desk
         self._period = 1.0 / frame_rate
-        self._token = (token or secrets.token_urlsafe(16)) if needs_token(host) else None
+        self._token = (token or own_token(port)) if needs_token(host) else None
         self._socket = listen(host, port)
         self._room = Room(desk)
 

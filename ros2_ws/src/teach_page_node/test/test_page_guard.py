@@ -6,7 +6,9 @@ from starlette.responses import PlainTextResponse
 from starlette.routing import Route, WebSocketRoute
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
-from teach_page_node.guard import COOKIE, Guard
+from teach_page_node import address
+from teach_page_node.address import own_token
+from teach_page_node.guard import Guard
 
 
 async def _page(_):
@@ -52,7 +54,49 @@ def test_an_open_page_wants_its_token_once(visit):
     with pytest.raises(WebSocketDisconnect), client.websocket_connect('/live'):
         pass
     assert client.get('/?token=secret').text == 'the page'
-    assert client.cookies[COOKIE] == 'secret'
+    (name, value), = client.cookies.items()
+    assert value == 'secret'
     assert client.get('/').text == 'the page'
-    with client.websocket_connect('ws://laptop:8088/live', headers={'cookie': f'{COOKIE}=secret'}) as socket:
+    with client.websocket_connect('ws://laptop:8088/live', headers={'cookie': f'{name}={value}'}) as socket:
         assert socket.receive_text() == 'a picture'
+
+
+def test_two_servers_of_a_host_leave_each_other_their_cookies(visit):
+    """A browser keeps cookies by host, whatever the port."""
+    first, second = visit('secret', 'laptop:8088'), visit('another', 'laptop:8089')
+    first.get('/?token=secret')
+    second.cookies.update(first.cookies)
+    assert second.get('/').status_code == 403
+    assert second.get('/?token=another').status_code == 200
+    first.cookies.update(second.cookies)
+    assert len(first.cookies) == 2
+    assert first.get('/').status_code == second.get('/').status_code == 200
+
+
+class TestOwnToken:
+    """The token of a node that is given none."""
+
+    @pytest.fixture(autouse=True)
+    def home(self, tmp_path, monkeypatch):
+        monkeypatch.setenv('ROS_HOME', str(tmp_path / 'ros'))
+        self.starter = '1 1'
+        monkeypatch.setattr(address, 'starter', lambda: self.starter)
+        return tmp_path / 'ros'
+
+    def test_stays_the_same_for_whoever_starts_the_node_again(self):
+        token = own_token(8088)
+        assert len(token) >= 20 and token == own_token(8088)
+
+    def test_is_another_for_another_start_or_port(self):
+        token = own_token(8088)
+        assert own_token(8089) != token
+        self.starter = '1 2'
+        assert own_token(8088) != token
+
+    def test_cannot_be_guessed_by_other_users(self, home):
+        own_token(8088)
+        assert (home / 'shared_control' / 'page_secret').stat().st_mode & 0o077 == 0
+
+    def test_is_made_anew_where_nothing_can_be_kept(self, home):
+        home.write_text('a file')
+        assert len(own_token(8088)) >= 20 and own_token(8088) != own_token(8088)

@@ -1,5 +1,8 @@
 """A recorded session, moment by moment."""
 
+import subprocess
+import sys
+
 import pytest
 from shared_control import contract
 from shared_control_records.bag.reader import BagReadError, read_bag
@@ -71,3 +74,14 @@ def test_the_player_seeks_holds_and_changes_speed(bag):
 def test_what_a_player_cannot_do_is_named(bag, command, value):
     with pytest.raises(ValueError, match=command):
         ReplayDesk(Recording(bag)).do(command, value)
+
+
+def test_a_replay_needs_no_ros():
+    """As its help says: on a laptop with bags and no ROS."""
+    program = """
+import sys
+for name in ('rclpy', 'sensor_msgs', 'geometry_msgs', 'std_msgs', 'nav_msgs', 'std_srvs', 'rcl_interfaces'):
+    sys.modules[name] = None
+import teach_page_node.recording, teach_page_node.replay, teach_page_node.replay_desk, teach_page_node.server
+"""
+    subprocess.run([sys.executable, '-c', program], check=True)

@@ -125,7 +125,7 @@ class TestStopRecord:
     def folders(self, tmp_path, monkeypatch):
         monkeypatch.setattr(stop_record, '_folders', lambda: [tmp_path / 'home', tmp_path / 'temporary'])
         self.starter = 'session 1'
-        monkeypatch.setattr(stop_record, '_starter', lambda: self.starter)
+        monkeypatch.setattr(stop_record, 'starter', lambda: self.starter)
         self.path = tmp_path
 
     def test_is_off_at_first_and_when_forgotten(self):

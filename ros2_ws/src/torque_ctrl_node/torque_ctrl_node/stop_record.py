@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from shared_control.files import write_atomically
+from shared_control.files import state_folder, write_atomically
+from shared_control.processes import starter
 
 
 class StopRecord:
@@ -27,7 +28,7 @@ class StopRecord:
 
     def is_on(self) -> bool:
         """Whether a stop holds that was kept before this process."""
-        return any(not content['left'] or content['starter'] == _starter() for _, content in self._kept())
+        return any(not content['left'] or content['starter'] == starter() for _, content in self._kept())
 
     def keep(self) -> None:
         """The emergency stop is on.
@@ -68,7 +69,7 @@ class StopRecord:
 
 
 def _write(path: Path, left: bool) -> None:
-    write_atomically(path, json.dumps({'left': left, 'starter': _starter()}).encode())
+    write_atomically(path, json.dumps({'left': left, 'starter': starter()}).encode())
 
 
 def _read(path: Path) -> dict[str, str | bool]:
@@ -83,15 +84,4 @@ def _read(path: Path) -> dict[str, str | bool]:
 
 
 def _folders() -> list[Path]:
-    home = os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')
-    return [Path(home) / 'shared_control', Path(tempfile.gettempdir()) / f'shared_control_{os.getuid()}']
-
-
-def _starter() -> str:
-    """The process that started this one: number and time of its start, since numbers are used again."""
-    parent = os.getppid()
-    try:
-        started = Path(f'/proc/{parent}/stat').read_text().rpartition(')')[2].split()[19]
-    except (OSError, IndexError):
-        started = ''
-    return f'{parent} {started}'
+    return [state_folder(), Path(tempfile.gettempdir()) / f'shared_control_{os.getuid()}']

@@ -7,7 +7,14 @@ import { part } from "./parts.js";
 
 const REPEAT_MS = 100;
 const NAMES = ["left", "right", "space"];
-const CODES = { ArrowLeft: 0, KeyA: 0, ArrowRight: 1, KeyD: 1, Space: 2 };
+// By what a key means (on a French keyboard A is where others have Q), and by where it is when it types no Latin letter.
+const MEANINGS = { ArrowLeft: 0, a: 0, ArrowRight: 1, d: 1, " ": 2 };
+const PLACES = { KeyA: 0, KeyD: 1 };
+
+function keyOf(event) {
+  const typed = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  return MEANINGS[typed] ?? (/^[\x20-\x7e]$/.test(typed) ? undefined : PLACES[event.code]);
+}
 
 export function listenToKeys(send) {
   const held = [new Set(), new Set(), new Set()]; // by what: a key's code, or a pointer
@@ -37,20 +44,22 @@ export function listenToKeys(send) {
   const key = (i) => document.querySelector(`[data-key="${NAMES[i]}"]`);
 
   window.addEventListener("keydown", (event) => {
-    const i = CODES[event.code];
+    const i = keyOf(event);
     if (i === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault(); // no scrolling, and no button pressed by the space bar
     setFocus(true); // a key that arrives here proves it
-    if (!event.repeat) {
-      held[i].add(event.code);
-      tell();
-    }
+    if (event.repeat) return;
+    const by = event.code || event.key; // a remote desktop may give no code
+    if (held[i].delete(by)) tell(); // that it was let go has been lost
+    held[i].add(by);
+    tell();
   }, true);
   window.addEventListener("keyup", (event) => {
-    const i = CODES[event.code];
-    if (i === undefined) return;
+    const by = event.code || event.key;
+    const released = held.filter((bys) => bys.delete(by)); // with Shift it may mean something else by now
+    if (!released.length) return;
     event.preventDefault();
-    if (held[i].delete(event.code)) tell();
+    tell();
   }, true);
 
   NAMES.forEach((_, i) => {

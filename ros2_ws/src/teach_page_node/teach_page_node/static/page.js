@@ -4,7 +4,7 @@ import { connect } from "./live.js";
 import { listenToKeys } from "./keys.js";
 import { listenToPlayer, showPlayer } from "./player.js";
 import { showHistory, showMoments } from "./charts.js";
-import { showScene, watchPace } from "./scene.js";
+import { prepareScene, showScene } from "./scene.js";
 import { showCloseView } from "./close_view.js";
 import { showConnection, showPicture, showRole } from "./panel.js";
 import { isMounted, part } from "./parts.js";
@@ -13,7 +13,21 @@ while (!isMounted()) await new Promise((resolve) => setTimeout(resolve, 50)); //
 
 const isReplay = document.body.classList.contains("replay");
 
-watchPace();
+prepareScene();
+
+const PARTS = [(picture) => showPicture(picture, isReplay), showScene, showCloseView, showMoments,
+  ...(isReplay ? [(picture) => showPlayer(picture.replay)] : [])];
+const failed = new Set();
+
+// A part that cannot be shown must not take the others, or the keys, with it.
+function apart(show, picture) {
+  try {
+    show(picture);
+  } catch (error) {
+    if (!failed.has(show)) console.error(error);
+    failed.add(show);
+  }
+}
 
 // For whoever measures.
 window.teachPage.pictures = 0;
@@ -23,11 +37,7 @@ const live = connect({
   picture(picture) {
     window.teachPage.pictures += 1;
     window.teachPage.picture = picture;
-    showPicture(picture, isReplay);
-    showScene(picture);
-    showCloseView(picture);
-    showMoments(picture);
-    if (isReplay) showPlayer(picture.replay);
+    for (const show of PARTS) apart(show, picture);
   },
   history: showHistory,
   role(role) {

@@ -17,6 +17,8 @@ export function show(name, isShown) {
 }
 
 export function isMounted() {
-  const scene = document.querySelector('[data-part="scene"] canvas');
-  return scene !== null && document.querySelector('[data-part="close-ball"]') !== null;
+  // NiceGUI's scene has a renderer when it is there, and is nothing but words when the browser has no WebGL.
+  const scene = document.querySelector('[data-part="scene"]');
+  if (scene === null || document.querySelector('[data-part="close-ball"]') === null) return false;
+  return Boolean(window.getElement(window.teachPage.scene)?.renderer) || scene.querySelector("canvas") === null;
 }

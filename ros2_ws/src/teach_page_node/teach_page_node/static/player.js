@@ -17,9 +17,9 @@ export function listenToPlayer(send) {
   slider.addEventListener("pointerup", () => (isDragging = false));
   slider.addEventListener("input", () => seek(Number(slider.value)));
   window.addEventListener("keydown", (event) => {
-    if (event.code === "Space") play();
-    else if (event.code === "ArrowLeft") seek(replay.position - JUMP);
-    else if (event.code === "ArrowRight") seek(replay.position + JUMP);
+    if (event.key === " ") play();
+    else if (event.key === "ArrowLeft") seek(replay.position - JUMP);
+    else if (event.key === "ArrowRight") seek(replay.position + JUMP);
     else return;
     event.preventDefault();
   }, true);

@@ -1,0 +1,80 @@
+"""The page of a node alone: keyboards of all kinds, and a browser that cannot draw in 3D."""
+
+import re
+
+import pytest
+from shared_control_testing.page import Browser
+
+pytestmark = pytest.mark.alone
+
+ARROW_RIGHT = {'key': 'ArrowRight', 'code': 'ArrowRight', 'windowsVirtualKeyCode': 39}
+
+
+@pytest.fixture(scope='class')
+def address(start_node):
+    node = start_node('teach_page_node', port=0)
+    node.wait_for_log('open http')
+    return re.search(r'open (http://[^\s\x1b]+)', node.log())[1]
+
+
+@pytest.fixture(scope='class')
+def browser(address):
+    browser = Browser(webgl=False)
+    browser.driver.get(address)
+    browser.wait(lambda: browser.text('role') == 'you teach', 'the seat')
+    yield browser
+    browser.close()
+
+
+class TestTheKeyboard:
+    """Keys as browsers report them."""
+
+    @pytest.fixture
+    def press(self, browser):
+        """``press(kind, **key)``: a key event as the browser gets it from the system."""
+        return lambda kind, **key: browser.driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': kind, **key})
+
+    @staticmethod
+    def is_down(browser, name):
+        return browser.script(f'return document.querySelector(\'[data-key="{name}"]\').classList.contains("down")')
+
+    def test_without_webgl_it_says_so_and_goes_on(self, browser):
+        assert 'cannot draw in 3D' in browser.text('scene')
+        assert browser.text('doing') == 'No robot is to be heard yet …'
+
+    @pytest.mark.parametrize(('name', 'key'), [
+        ('left', {'key': 'a', 'code': 'KeyQ', 'windowsVirtualKeyCode': 65}),  # a French keyboard
+        ('right', {'key': 'd', 'code': 'KeyH', 'windowsVirtualKeyCode': 68}),  # Dvorak
+        ('left', {'key': 'ф', 'code': 'KeyA', 'windowsVirtualKeyCode': 65}),  # a Russian one
+        ('left', {'key': 'A', 'code': 'KeyA', 'windowsVirtualKeyCode': 65}),
+        ('left', {'key': 'ArrowLeft', 'windowsVirtualKeyCode': 37}),  # a remote desktop
+        ('right', {'key': 'ArrowRight', 'code': 'Numpad6', 'windowsVirtualKeyCode': 39}),
+        ('space', {'key': ' ', 'code': 'Space', 'windowsVirtualKeyCode': 32})])
+    def test_keys_count_by_what_they_mean(self, browser, press, name, key):
+        press('rawKeyDown', **key)
+        assert self.is_down(browser, name)
+        press('keyUp', **key)
+        assert not self.is_down(browser, name)
+
+    @pytest.mark.parametrize('key', [
+        {'key': 'q', 'code': 'KeyA', 'windowsVirtualKeyCode': 81}, {'key': '4', 'code': 'Numpad4'}])
+    def test_other_keys_mean_nothing(self, browser, press, key):
+        press('rawKeyDown', **key)
+        assert not any(self.is_down(browser, name) for name in ('left', 'space', 'right'))
+        press('keyUp', **key)
+
+    def test_a_lost_release_does_not_make_a_key_dead(self, browser, press):
+        browser.script('window.sent = []; const send = WebSocket.prototype.send;'
+                       'WebSocket.prototype.send = function (text) { window.sent.push(text); send.call(this, text); }')
+        press('rawKeyDown', **ARROW_RIGHT)
+        press('rawKeyDown', **ARROW_RIGHT)
+        sent = [text for text in browser.script('return window.sent') if 'keys' in text]
+        down = ['[0,1,0]' in text for text in sent]
+        assert sum(now and not before for before, now in zip([False, *down], down, strict=False)) == 2
+        press('keyUp', **ARROW_RIGHT)
+
+    def test_a_part_that_fails_takes_no_other_with_it(self, browser):
+        browser.script("document.querySelector('[data-part=tilt]').remove()")
+        pictures = browser.script('return teachPage.pictures')
+        browser.wait(lambda: browser.script('return teachPage.pictures') > pictures + 5, 'more pictures')
+        assert browser.text('role') == 'you teach'
