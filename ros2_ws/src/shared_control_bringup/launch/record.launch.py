@@ -1,4 +1,8 @@
-"""``ros2 bag record`` of what session_recorder_node records: every topic of the contract, with its QoS."""
+"""``ros2 bag record`` of what session_recorder_node records: every topic of the contract, with its QoS.
+
+Not with --include-unpublished-topics: a topic that has a subscriber, but no publisher yet, would go into the bag
+without the QoS of its publishers, and ``ros2 bag play`` would not latch it.
+"""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess
@@ -16,7 +20,6 @@ def generate_launch_description() -> LaunchDescription:
             cmd=['ros2', 'bag', 'record', '--storage', 'mcap', '--output', LaunchConfiguration('output'),
                  '--storage-config-file', PathJoinSubstitution([SHARE, 'bags', 'mcap_writer_options.yaml']),
                  '--qos-profile-overrides-path', PathJoinSubstitution([SHARE, 'bags', 'qos_overrides.yaml']),
-                 '--include-unpublished-topics', '--topics',
-                 *(topic.full_name for topic in BAG_TOPICS)],
+                 '--topics', *(topic.full_name for topic in BAG_TOPICS)],
             output='screen'),
     ])

@@ -1,9 +1,12 @@
-"""A recorded session once more: its bag, and viewers. Start nothing else in this ROS domain."""
+"""A recorded session once more: its bag, and viewers. Start no robot and no controller in this ROS domain.
+
+Screens take the joints from /joint_states_throttle, which is not in bags: /joint_states is played there.
+"""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess
-from launch.substitutions import LaunchConfiguration
-from shared_control_bringup.launching import environment, view, view_argument
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from shared_control_bringup.launching import SHARE, environment, view, view_argument
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -13,8 +16,11 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument('rate', default_value='1.0', description='Of the wall clock.'),
         view_argument('true'),
         *environment(),
-        view(joint_states='joint_states'),
+        view(),
         ExecuteProcess(
-            cmd=['ros2', 'bag', 'play', LaunchConfiguration('bag'), '--rate', LaunchConfiguration('rate')],
+            cmd=['ros2', 'bag', 'play', LaunchConfiguration('bag'), '--rate', LaunchConfiguration('rate'),
+                 '--read-ahead-queue-size', '20000',
+                 '--qos-profile-overrides-path', PathJoinSubstitution([SHARE, 'bags', 'qos_overrides.yaml']),
+                 '--remap', '/joint_states:=/joint_states_throttle'],
             output='screen'),
     ])

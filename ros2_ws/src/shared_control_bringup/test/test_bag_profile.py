@@ -9,12 +9,18 @@ from mcap.reader import make_reader
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from shared_control import contract as table
 from shared_control.contract import RECORDER_DEPTH
 from shared_control.contract_tables import qos_overrides, record_arguments
 from shared_control_records.bag.writer import BagWriter
-from shared_control_ros.contract import BAG_TOPICS
+from shared_control_ros.contract import BAG_TOPICS, ros_topic
+from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.watching.observer import Observer
+from shared_control_ros.watching.scene import Scene
+from shared_control_testing import sessions as made
 
 PACKAGE = Path(__file__).parents[1]
+README = (PACKAGE / 'README.md').read_text()
 
 
 @pytest.fixture
@@ -51,10 +57,52 @@ def test_storage_options_are_those_of_the_recorders_files(recorded):
     assert bool(summary.channels) is not options['noSummary']
 
 
+def documented(verb):
+    """The words of the README's command ``ros2 bag VERB``."""
+    command = re.search(rf'    ros2 bag {verb} (.*?)(?:\n\n|\Z)', README, re.DOTALL)
+    return command.group(1).replace('\\\n', ' ').split()
+
+
 def test_the_documented_command_names_all_topics_and_files():
-    readme = (PACKAGE / 'README.md').read_text()
-    command = re.search(r'ros2 bag record (.*?)(?:\n\n|\Z)', readme, re.DOTALL).group(1).replace('\\\n', ' ').split()
-    assert record_arguments() in readme, 'python -m shared_control.contract_tables record_arguments'
-    assert '--include-unpublished-topics' in command
+    command = documented('record')
+    assert record_arguments() in README, 'python -m shared_control.contract_tables record_arguments'
+    assert '--include-unpublished-topics' not in command, 'topics that subscribers announce are recorded without QoS'
     for option in ('--qos-profile-overrides-path', '--storage-config-file'):
         assert (PACKAGE / 'bags' / Path(command[command.index(option) + 1]).name).is_file()
+
+
+def test_a_bag_played_as_documented_shows_arm_and_ball_and_latches_the_phase(observer):
+    """The test plays as ``ros2 bag play`` does with these options; screens are the watchers that they are made of."""
+    command = documented('play')
+    remapped = dict([command[command.index('--remap') + 1].split(':=')])
+    overrides = yaml.safe_load((PACKAGE / 'bags' / Path(
+        command[command.index('--qos-profile-overrides-path') + 1]).name).read_text())
+    topics = (table.JOINT_STATES, table.BALL, table.PHASE)
+    publishers = {topic: observer.node.create_publisher(
+        ros_topic(topic).msg_type, remapped.get(topic.full_name, topic.full_name),
+        QoSProfile(depth=1, durability=DurabilityPolicy.get_from_short_key(overrides[topic.full_name]['durability'])))
+        for topic in topics}
+    recording = made.record([made.lesson(5)])
+    watcher, scene = Observer(observer.node), Scene()
+
+    def play(topic):
+        for message in recording.of(topic):
+            publishers[topic].publish(made.STORE.serialize_cdr(message, topic.type).tobytes())
+
+    def shown():
+        play(table.JOINT_STATES)
+        play(table.BALL)
+        watcher.update(scene)
+        return scene.q is not None and scene.ball is not None
+
+    play(table.PHASE)
+    lesson = Lesson(observer.node)  # comes late
+    observer.spin(shown)
+    observer.spin(lambda: lesson.update() or lesson.phase == 'teach')
+
+
+def test_the_launch_file_plays_as_documented():
+    launch = (PACKAGE / 'launch' / 'replay.launch.py').read_text()
+    for word in documented('play'):
+        if word not in ('bag', '\\'):
+            assert repr(Path(word).name if word.startswith('$share') else word) in launch

@@ -1,6 +1,7 @@
 """``shared-control report``: the page of a study, or of a session from its bag alone."""
 
 import argparse
+import sys
 from pathlib import Path
 
 
@@ -23,8 +24,13 @@ def run(args: argparse.Namespace) -> int:
         from .study_report.report import write_study_report
         page = write_study_report(StudyFolder(args.source), args.output or args.source / 'report')
     else:
+        from .bag.task import session_record
         from .session.bag_report import write_bag_report
         page = write_bag_report(args.source, args.output or args.source.absolute().with_name(
             f'{args.source.stem}_report'))
+        if not session_record(args.source):
+            print('note: this bag has no record of the session (`ros2 bag record` and `convert` keep none): preset, '
+                  'test of the policy and restarts are unknown, the tutor is guessed, the task is taken to be balance '
+                  "unless a session's settings.json lies beside the bag", file=sys.stderr)
     print(page)
     return 0

@@ -17,6 +17,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
+from . import contract
 from .contract import Topic, qos
 
 
@@ -83,6 +84,19 @@ class Polled:
         """The next message, waiting ``timeout`` seconds for it at the most; None when none came."""
         self.wait_ready(timeout)
         return self.take()
+
+
+def follow_clock(node: Node) -> None:
+    """Set the clock of a node with ``use_sim_time`` to the newest ``/clock``, before it stamps a message.
+
+    rclpy takes /clock in the executor, which such a node serves seldom: its clock would lag by seconds, or stay at 0.
+    """
+    for subscription in node.subscriptions:
+        if subscription.topic_name == contract.CLOCK.full_name and not isinstance(
+                subscription.callback_group, _NotForTheExecutor):
+            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+            if taken is not None:
+                subscription.callback(taken[0])
 
 
 class Background:

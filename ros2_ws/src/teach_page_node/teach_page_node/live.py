@@ -8,7 +8,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import Joy
 from shared_control.keys import BUTTONS, Key, KeyPresses
 from shared_control_ros import contract
-from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.fast_loop import Background, Polled, follow_clock
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Moment, Observer
 from shared_control_ros.watching.scene import Scene
@@ -100,6 +100,7 @@ class LiveDesk:
 
     def press(self, buttons: list[int]) -> None:
         """See :class:`Desk`."""
+        follow_clock(self._node)
         self._joy.header.stamp = self._node.get_clock().now().to_msg()
         self._joy.buttons = buttons
         self._keys.publish(self._joy)

@@ -143,6 +143,8 @@ class TeleopKeyNode:
             self._panel.tell(text)
 
     def _publish(self, moment: np.ndarray, now_ns: int) -> None:
+        if not now_ns:
+            return  # the time is not known yet: a stamp of 0 would be taken for a stale moment
         set_ns(self._wrench.header.stamp, now_ns)
         set_moment(self._wrench, moment, self._task.axes)
         self._publisher.publish(self._wrench)

@@ -75,7 +75,10 @@ class Panel:
         self._message_until = time.monotonic() + _MESSAGE_FOR
 
     def read(self, now_ns: int) -> None:
-        """Publish which keys are down: at every change, and every 0.08 s as a sign that the terminal is still there."""
+        """Publish which keys are down: at every change, and every 0.08 s as a sign that the terminal is still there.
+
+        Nothing is published before there is a time.
+        """
         pressed = self._held.update(self._keyboard.strokes(self.terminal.read()), time.monotonic())
         if not self.terminal.is_entered:
             return  # in the background: as good as gone
@@ -86,7 +89,7 @@ class Panel:
         changed = buttons != list(self._joy.buttons)
         self._joy.buttons = buttons
         self._ticks += 1
-        if self._sends_keys and (changed or self._ticks % self._repeat_ticks == 0):
+        if self._sends_keys and now_ns and (changed or self._ticks % self._repeat_ticks == 0):
             self._keys.publish(self._joy)
         self.requests.expire()
 

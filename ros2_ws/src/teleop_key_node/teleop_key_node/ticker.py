@@ -31,7 +31,7 @@ class Ticker:
         self._next = time.monotonic() + period
 
     def wait(self) -> int:
-        """The node's time at the next tick, ns."""
+        """The node's time at the next tick, ns; 0 until /clock has shown it."""
         if self._clock is None:
             self._sleep()
             return self._ros_clock.now().nanoseconds

@@ -88,10 +88,10 @@ class Graph:
             assert self.listen() == m_y
             time.sleep(0.02)
 
-    def wait_for_node(self) -> None:
+    def wait_for_node(self, meanwhile: Callable[[], None]) -> None:
         """Until the node publishes and hears."""
-        self.until(lambda: self.listen() == 0.0 and self._keys.get_subscription_count() >= 2
-              and self._phase.get_subscription_count() >= 1, 'the node')
+        self.until(lambda: meanwhile() or (self.listen() == 0.0 and self._keys.get_subscription_count() >= 2
+                                        and self._phase.get_subscription_count() >= 1), 'the node')
 
     def close(self) -> None:
         self.node.destroy_node()
@@ -157,9 +157,9 @@ def start(graph: Graph) -> Iterator[Callable[..., Process]]:
     """Start the node without a terminal and wait for it."""
     started: list[Process] = []
 
-    def start(*parameters: str, kind: type = Process):
+    def start(*parameters: str, kind: type = Process, meanwhile: Callable[[], None] = lambda: None):
         started.append(kind(*parameters))
-        graph.wait_for_node()
+        graph.wait_for_node(meanwhile)
         return started[-1]
     yield start
     for process in started:

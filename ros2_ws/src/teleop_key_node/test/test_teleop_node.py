@@ -93,8 +93,10 @@ def test_zero_is_the_last_that_is_published(graph, start):
 
 def test_stamps_follow_simulation_time(graph, start):
     clock = graph.publisher(contract.CLOCK)
-    start('screen:=off', 'use_sim_time:=true')
     message = Clock()
+    set_ns(message.clock, 10**18 - 20_000_000)
+    start('screen:=off', 'use_sim_time:=true', meanwhile=lambda: clock.publish(message))
+    assert min(graph.stamps) >= 10**18 - 20_000_000, 'nothing is published before the time is known'
 
     def ticked() -> bool:
         clock.publish(message)  # again and again: the node may not hear yet

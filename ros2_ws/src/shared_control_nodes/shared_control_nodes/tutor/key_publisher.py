@@ -18,6 +18,8 @@ REPEAT_SECONDS = 0.05
 class KeyPublisher:
     """Presses and releases keys on ``/human/keys`` and repeats their state.
 
+    Stamps are the robot's time; 0, before that is known, becomes the node's.
+
     Args:
         node: whose publisher it is.
         keys: those of the task.
@@ -29,6 +31,7 @@ class KeyPublisher:
         self._joy = Joy(buttons=self._up)
         self._joy.header.frame_id = SOURCE
         self._published_at = 0.0
+        self._clock = node.get_clock()
         self.presses = 0
 
     def press(self, key: Key, stamp_ns: int) -> None:
@@ -52,6 +55,9 @@ class KeyPublisher:
         self._publish(stamp_ns)
 
     def _publish(self, stamp_ns: int) -> None:
+        stamp_ns = stamp_ns or self._clock.now().nanoseconds
+        if not stamp_ns:
+            return  # simulation time is not known yet
         set_ns(self._joy.header.stamp, stamp_ns)
         self._publisher.publish(self._joy)
         self._published_at = time.monotonic()

@@ -26,15 +26,20 @@ def read_summary(path: Path) -> Summary | None:
     Raises:
         BagError: the file has an end, and is damaged.
     """
+    if not is_finished(path):
+        return None
     with path.open('rb') as file:
-        file.seek(max(len(MCAP0_MAGIC), path.stat().st_size - len(MCAP0_MAGIC)))
-        if file.read() != MCAP0_MAGIC:
-            return None
-        file.seek(0)
         try:
             return make_reader(file).get_summary()
         except Exception as error:  # mcap raises errors of many kinds
             raise BagError(f'{path} is damaged: {error}; it is left as it is, move it away') from error
+
+
+def is_finished(path: Path) -> bool:
+    """Whether an MCAP file has its end, and so its index."""
+    with path.open('rb') as file:
+        file.seek(max(len(MCAP0_MAGIC), path.stat().st_size - len(MCAP0_MAGIC)))
+        return file.read() == MCAP0_MAGIC
 
 
 def lists_all_files(bag: Path) -> bool:
@@ -95,8 +100,8 @@ def _topics(summaries: list[Summary]) -> list[dict[str, Any]]:
                     'name': channel.topic,
                     'type': summary.schemas[channel.schema_id].name,
                     'serialization_format': channel.message_encoding,
-                    'offered_qos_profiles': yaml.safe_load(channel.metadata['offered_qos_profiles']),
-                    'type_description_hash': channel.metadata['topic_type_hash'],
+                    'offered_qos_profiles': yaml.safe_load(channel.metadata.get('offered_qos_profiles', '')) or [],
+                    'type_description_hash': channel.metadata.get('topic_type_hash', ''),
                 },
                 'message_count': 0,
             })

@@ -1,6 +1,7 @@
 """Reading a session's bag into arrays."""
 
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from shared_control.tasks.task import Task
 
 from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
 from .files import BagReadError
+from .metadata import is_finished
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
 from .task import recorded_task
 
@@ -72,27 +74,55 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
         BagReadError: there is none, or it was not finished, or it is damaged.
     """
     path = Path(path)
-    if path.is_dir() and not (path / 'metadata.yaml').is_file():
-        raise BagReadError(f'the bag {path} has no metadata.yaml: its recording was not finished')
-    if not path.exists():
-        raise BagReadError(f'there is no bag {path}')
+    _check_finished(path)
     try:
         task = recorded_task(path) if task is None else task
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
-            collector = _Collector(reader, task, panda() if robot is None else robot)
+            namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
+            collector = _Collector(reader, namespace, task, panda() if robot is None else robot)
             for connection, received_ns, raw in reader.messages():
                 collector.add(connection, received_ns, raw)
             return collector.finish(path)
+    except BagReadError:
+        raise
     except Exception as error:  # a damaged file makes rosbags and the decompressor raise errors of many kinds
         raise BagReadError(f'cannot read the bag {path}: {error or type(error).__name__}') from error
+
+
+def _check_finished(path: Path) -> None:
+    if not path.exists():
+        raise BagReadError(f'there is no bag {path}')
+    folder = path if path.is_dir() else path.parent
+    torn = [file.name for file in (sorted(path.glob('*.mcap')) if path.is_dir() else [path]) if not is_finished(file)]
+    missing = path.is_dir() and not (path / 'metadata.yaml').is_file()
+    if torn or missing:
+        what = f'{", ".join(torn)} has no index' if torn else 'it has no metadata.yaml'
+        raise BagReadError(f'the recording of the bag {path} was not finished: {what}; '
+                           f'`shared-control recover {folder}` finishes it')
+
+
+def recorded_namespace(bag: Path, topics: Iterable[str]) -> str:
+    """The namespace of the robot whose topics a bag has, as in ``/robot1``; empty when it has none.
+
+    Raises:
+        BagReadError: it has several robots.
+    """
+    ending = contract.JOINT_STATES.full_name
+    found = sorted({topic.removesuffix(ending) for topic in topics if topic.endswith(ending)})
+    if '' in found or not found:
+        return ''
+    if len(found) > 1:
+        raise BagReadError(f'the bag {bag} has the topics of several robots ({", ".join(found)}): make a bag of '
+                           'each with `ros2 bag convert`')
+    return found[0]
 
 
 class _Collector:
     """Sorts the messages of a bag by topic, decoding them."""
 
-    def __init__(self, reader: AnyReader, task: Task, robot: RobotSpec):
-        self._reader, self._task, self._robot = reader, task, robot
-        self._counts = Counter({connection.topic: 0 for connection in reader.connections})
+    def __init__(self, reader: AnyReader, namespace: str, task: Task, robot: RobotSpec):
+        self._reader, self._namespace, self._task, self._robot = reader, namespace, task, robot
+        self._counts = Counter({self._relative(connection.topic): 0 for connection in reader.connections})
         self._unusable: Counter[str] = Counter()
         self._bulk = {
             contract.JOINT_STATES.full_name: BulkTopic(
@@ -109,9 +139,13 @@ class _Collector:
         self._statuses: dict[str, list[Status]] = {}
         self._times: list[int] = []
 
+    def _relative(self, topic: str) -> str:
+        """The name of a topic in a graph without a namespace."""
+        return topic.removeprefix(self._namespace) if topic.startswith(self._namespace + '/') else topic
+
     def add(self, connection: Connection, received_ns: int, raw: bytes) -> None:
         """One message."""
-        topic = connection.topic
+        topic = self._relative(connection.topic)
         self._counts[topic] += 1
         self._times = [self._times[0] if self._times else received_ns, received_ns]
         if topic in self._bulk:

@@ -62,5 +62,5 @@ def annotate(bag: str | Path, name: str, content: dict[str, str]) -> None:
     recover(bag)
     files = bag_files(Path(bag).expanduser())
     if not files:
-        raise BagError(f'there is no bag at {bag}')
+        raise BagError(f'{bag} has no file NAME_NUMBER.mcap (compressed files, .mcap.zstd, are not written to)')
     rewrite(files[-1], (name, content))

@@ -92,6 +92,10 @@ def _copy(source: IO[bytes], path: Path, writer: Writer, without: str | None,
                 meanwhile()
             case DataEnd():
                 break
+            case Schema() | Channel() | Message():  # a file without chunks, as `ros2 bag convert` can write it
+                if spoilt:
+                    raise BagError(f'{path} is damaged before its end; it is left as it is, move it away')
+                messages += _copy_messages([record], writer, schemas, channels)
             case MessageIndex():
                 pass
             case _:

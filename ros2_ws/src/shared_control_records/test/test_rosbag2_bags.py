@@ -1,0 +1,131 @@
+"""Bags that rosbag2's own tools wrote, as far as ``mcap`` and ``rosbags`` can stand in for them."""
+
+import dataclasses
+from collections import Counter
+
+import numpy as np
+import pytest
+from rosbags.rosbag2 import Reader
+from shared_control import contract
+from shared_control.cli import main
+from shared_control_records.bag import annotate, recover
+from shared_control_records.bag.checks import check_bag
+from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_testing import rosbag2
+from shared_control_testing import sessions as made
+
+FORMS = {
+    'converted': {},
+    'split': {'files': 4},
+    'compressed by file': {'compression': 'file'},
+    'split and compressed by file': {'files': 3, 'compression': 'file'},
+    'compressed by message': {'compression': 'message'},
+    'without chunks': {'chunks': False},
+    'recorded without QoS': {'qos': False},
+    'namespaced': {'rename': lambda topic: topic if topic == '/clock' else f'/robot1{topic}'},
+}
+
+
+@pytest.fixture(scope='module')
+def own(tmp_path_factory):
+    return made.record([made.lesson(50), made.lesson(80, seed=1)]).write(tmp_path_factory.mktemp('made') / 'bag')
+
+
+def equal(one, other):
+    """Whether two bags have the same content, whatever their files are called."""
+    if isinstance(one, np.ndarray):
+        np.testing.assert_array_equal(one, other)
+    elif dataclasses.is_dataclass(one):
+        for field in dataclasses.fields(one):
+            if field.name not in ('path', 'counts'):
+                equal(getattr(one, field.name), getattr(other, field.name))
+    elif isinstance(one, dict):
+        assert one.keys() == other.keys()
+        for key, value in one.items():
+            equal(value, other[key])
+    else:
+        assert one == other
+
+
+def run(monkeypatch, *arguments):
+    monkeypatch.setattr('sys.argv', ['shared-control', *map(str, arguments)])
+    return main()
+
+
+@pytest.mark.parametrize('form', FORMS)
+def test_a_bag_of_rosbag2_is_read_as_our_own(own, tmp_path, form):
+    bag = rosbag2.convert(own, tmp_path / 'other', **FORMS[form])
+    read, original = read_bag(bag), read_bag(own)
+    equal(read, original)
+    assert +Counter(read.counts) == +Counter(original.counts)
+    assert check_bag(read, expected=()) == []
+
+
+def test_a_reindexed_bag_is_read_and_recovered(own, tmp_path):
+    bag = rosbag2.reindex(rosbag2.convert(own, tmp_path / 'other', files=2))
+    equal(read_bag(bag), read_bag(own))
+    before = (bag / 'metadata.yaml').read_text()
+    assert recover(bag) == [] and (bag / 'metadata.yaml').read_text() == before
+
+
+@pytest.mark.parametrize('chunks', [True, False])
+def test_a_killed_recording_of_rosbag2_is_finished(own, tmp_path, chunks, monkeypatch, capsys):
+    bag = rosbag2.convert(own, tmp_path / 'other', chunks=chunks)
+    path, = bag.glob('*.mcap')
+    path.write_bytes(path.read_bytes()[:path.stat().st_size * 2 // 3])
+    for metadata in (True, False):  # `ros2 bag reindex` makes one for a torn file
+        if not metadata:
+            (bag / 'metadata.yaml').unlink()
+        for command in (['report', bag], ['export', bag], ['export', path]):
+            assert run(monkeypatch, *command) == 2
+            assert f'`shared-control recover {bag}` finishes it' in capsys.readouterr().err
+    assert run(monkeypatch, 'recover', bag) == 0
+    assert 'messages kept' in capsys.readouterr().out
+    read, original = read_bag(bag), read_bag(own)
+    kept = len(read.joint_states.stamp_ns)
+    assert 0.3 * len(original.joint_states.stamp_ns) < kept < len(original.joint_states.stamp_ns)
+    np.testing.assert_array_equal(read.joint_states.q, original.joint_states.q[:kept])
+    with Reader(bag) as reader:
+        times = [received for _, received, _ in reader.messages()]
+    assert times == sorted(times)
+    assert run(monkeypatch, 'recover', bag) == 0
+    assert 'every file is whole' in capsys.readouterr().out
+
+
+def test_a_bag_of_several_robots_names_them(own, tmp_path):
+    bag = rosbag2.convert(own, tmp_path / 'one', rename=lambda topic: {'/joint_states': '/a/joint_states',
+                                                                      '/ball': '/b/joint_states'}.get(topic, topic))
+    with pytest.raises(BagReadError, match=r'several robots \(/a, /b\)'):
+        read_bag(bag)
+
+
+def test_a_burst_of_late_messages_is_no_false_alarm(own, tmp_path):
+    """A recorder on a busy machine gets /target_wrench up to a second late; stamps decide, not when it came."""
+    recording = made.record([made.lesson(100)])
+    late = {topic.full_name for topic in made.APPLIED}
+    first = made.START_NS + 500 * made.MS
+    recording.messages = [
+        (topic, max(at, first + 900 * made.MS) if topic.full_name in late and at >= first else at, content)
+        for topic, at, content in recording.messages]
+    assert check_bag(read_bag(recording.write(tmp_path / 'bag'))) == []
+
+
+def test_report_says_that_a_converted_bag_has_no_record_of_the_session(own, tmp_path, monkeypatch, capsys):
+    bag = rosbag2.convert(own, tmp_path / 'other')
+    assert run(monkeypatch, 'report', bag, '--output', tmp_path / 'report') == 0
+    assert 'has no record of the session' in capsys.readouterr().err
+    annotate(bag, 'shared_control_session', {'settings.json': '{"preset": "coached", "tutor": "keyboard"}'})
+    assert run(monkeypatch, 'report', bag, '--output', tmp_path / 'again') == 0
+    assert 'no record' not in capsys.readouterr().err
+
+
+def test_a_compressed_bag_is_not_annotated(own, tmp_path):
+    bag = rosbag2.convert(own, tmp_path / 'other', compression='file')
+    with pytest.raises(OSError, match=r'compressed files, \.mcap\.zstd, are not written to'):
+        annotate(bag, 'note', {})
+
+
+def test_contract_topics_that_nobody_published_are_named(own, tmp_path):
+    """`ros2 bag record` without --include-unpublished-topics leaves them out."""
+    found = check_bag(read_bag(rosbag2.convert(own, tmp_path / 'other')))
+    assert f'{contract.DISTURBANCE.full_name} was not recorded' in found

@@ -1,0 +1,38 @@
+"""What a node reports of itself."""
+
+import pytest
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
+from shared_control_ros import contract
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.stamps import set_ns, to_ns
+
+PERIOD_NS = 20_000_000
+
+
+@pytest.fixture
+def node(observer):
+    node = Node('reporting', context=observer.context, parameter_overrides=[Parameter('use_sim_time', value=True)])
+    yield node
+    node.destroy_node()
+
+
+def test_stamps_are_simulation_time_though_the_node_serves_no_clock(observer, node):
+    """A loop that takes its messages by hand, as the tutor's and the agent's do, never spins."""
+    clock, heard = observer.publisher(contract.CLOCK), observer.listen(contract.DIAGNOSTICS)
+    diagnostics = Diagnostics(node, 0.02)
+    observer.spin(clock.get_subscription_count)
+    message, now_ns = Clock(), 10**18
+
+    def reported():
+        nonlocal now_ns
+        now_ns += PERIOD_NS
+        set_ns(message.clock, now_ns)
+        clock.publish(message)
+        diagnostics.publish({})
+        return len(heard) > 20 and to_ns(heard[-1].header.stamp) >= 10**18
+
+    observer.spin(reported)
+    late = now_ns - to_ns(heard[-1].header.stamp)
+    assert late < 25 * PERIOD_NS, f'{late * 1e-9} s late'
