@@ -41,8 +41,10 @@ session: setup
 	$(BIN)/shared-control session
 
 test: setup
-	$(BIN)/python -m pytest -m 'not alone' --numprocesses 2 --dist loadscope --no-loadscope-reorder
-	$(BIN)/python -m pytest -m alone
+	@failed=0; \
+	$(BIN)/python -m pytest -m 'not alone' --numprocesses 2 --dist loadscope --no-loadscope-reorder || failed=1; \
+	$(BIN)/python -m pytest -m alone || failed=1; \
+	exit $$failed
 
 lint: setup
 	$(BIN)/ruff check .

@@ -6,38 +6,58 @@ The machines this runs on differ and are shared: compare the ratios, which are t
 import argparse
 import json
 import platform
-from collections.abc import Callable
+import traceback
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import graph
-import headless
-import page
-import training
+from shared_control.files import write_atomically
 
-MEASUREMENTS: dict[str, Callable[[], dict[str, Any]]] = {
-    'headless': lambda: {'headless': headless.measure()}, 'graph': lambda: {'graph': graph.measure()},
-    'page': lambda: {'page': page.measure()}, 'learning': training.measure}
+MEASUREMENTS = {'headless': 'headless', 'graph': 'graph', 'page': 'page', 'learning': 'training'}
+"""By name, the module whose ``measure()`` gives the figures by subject."""
+MISSING = 'missing'
+"""Key of a subject's figures: what of this machine's could not be measured, and what would be needed."""
 
 
-def main() -> None:
-    """Entry point."""
+def main() -> int:
+    """Entry point; the exit code: 0, or 1 when a measurement failed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--output', type=Path, default=Path('out/bench.json'))
     parser.add_argument('--only', choices=tuple(MEASUREMENTS), help='one measurement instead of all')
     args = parser.parse_args()
     results: dict[str, Any] = {'machine': {'python': platform.python_version(), 'platform': platform.platform()}}
-    for name, measure in MEASUREMENTS.items():
-        if args.only in (None, name):
-            print(f'{name} ...', flush=True)
-            found = measure()
-            results |= found
-            print(json.dumps({key: {k: v for k, v in figures.items() if k != 'rounds'}
-                              for key, figures in found.items()}, indent=2), flush=True)
     args.output.parent.mkdir(parents=True, exist_ok=True)
-    args.output.write_text(json.dumps(results, indent=2) + '\n')
+    failed = []
+    for name in [args.only] if args.only else MEASUREMENTS:
+        print(f'{name} ...', flush=True)
+        try:
+            found = measure(name)
+        except Exception:  # each stands on its own
+            traceback.print_exc()
+            failed.append(name)
+            continue
+        results |= found
+        write_atomically(args.output, (json.dumps(results, indent=2) + '\n').encode())
+        print(json.dumps({key: {k: v for k, v in figures.items() if k != 'rounds'}
+                          for key, figures in found.items()}, indent=2), flush=True)
     print(f'written to {args.output}')
+    for name, figures in results.items():
+        if MISSING in figures:
+            print(f'{name}: not all was measured: {figures[MISSING]}')
+    if failed:
+        print(f'failed: {", ".join(failed)}')
+    return int(bool(failed))
+
+
+def measure(name: str) -> dict[str, dict[str, Any]]:
+    """The figures of one measurement, by subject; a package that is missing is among them."""
+    try:
+        module = import_module(MEASUREMENTS[name])
+    except ModuleNotFoundError as error:
+        return {name: {MISSING: f'there is no Python package {error.name}'}}
+    figures: dict[str, dict[str, Any]] = module.measure()
+    return figures if name == 'learning' else {name: figures}
 
 
 if __name__ == '__main__':
-    main()
+    raise SystemExit(main())

@@ -65,7 +65,8 @@ class PpoAgentNode(Callbacks):
             node, 'episode_seconds', chosen.task.episode_seconds, 'The longest an episode of teaching lasts.',
             unit='s', minimum=1.0, maximum=600.0)
         minutes = declare(
-            node, 'max_minutes', 45.0, 'Teach for this long at the most.', unit='min', minimum=0.1, maximum=1440.0)
+            node, 'max_minutes', 45.0, "Teach for this long at the most, by the robot's time and that of learning; what "
+            'an earlier run in output has used is counted, pauses are not.', unit='min', minimum=0.1, maximum=1440.0)
         self._test_episodes = declare(
             node, 'test_episodes', 0, 'Test the policy alone with so many episodes on the graph, in the end.',
             minimum=0, maximum=1000)
@@ -88,7 +89,8 @@ class PpoAgentNode(Callbacks):
                 raise ParameterError("parameter 'test_episodes' must be at least 1 in mode 'test'")
             self._learner = _load(Path(policy), 'policy')
         warm_up(replace(preset(self._learner.name), task=self._learner.task))
-        self._seconds_left = minutes * 60.0
+        self._seconds_left = minutes * 60.0 - (self._table.taught_seconds if self._table else 0.0)
+        self._episode: Episode | None = None
         self._finish = False
         self._repeat = False
         self._training = TrainingTopics(node)
@@ -203,7 +205,7 @@ class PpoAgentNode(Callbacks):
 
     def episode_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
-        self._started = time.monotonic()
+        self._episode = episode
         self._repeat = False
         self._diagnostics.skip()
         self._training.enter(episode.phase)
@@ -229,7 +231,7 @@ class PpoAgentNode(Callbacks):
         if self._table is not None and self._policy_path is not None:
             self._table.append(episode)  # before the learner: a row too many is dropped on resuming
             save_policy(self._learner, self._policy_path)
-        self._seconds_left -= time.monotonic() - self._started
+        self._seconds_left -= len(episode) * POLICY_PERIOD + episode.learn_seconds
         self.node.get_logger().info(
             f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '
             f'learned in {episode.learn_seconds:.2f} s')
@@ -243,6 +245,8 @@ class PpoAgentNode(Callbacks):
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""
         self.node.get_logger().warning(f'the episode is void: {error}')
+        if self._episode is not None and self._episode.phase == 'teach':
+            self._seconds_left -= len(self._episode) * POLICY_PERIOD  # a person has taught for as long
         again = time.monotonic() + TRY_AGAIN_SECONDS  # whatever is the matter may last
         while time.monotonic() < again:
             time.sleep(0.1)

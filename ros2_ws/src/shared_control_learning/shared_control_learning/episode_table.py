@@ -26,6 +26,8 @@ class EpisodeTable:
         self._path = path
         rows = [row for row in read_rows(path) if row['phase'] == 'teach' and int(row['episode']) <= taught]
         self._has_header = bool(rows)
+        self.taught_seconds = sum(float(row['seconds']) + float(row['learn_seconds']) for row in rows)
+        """How long the learner was taught before, s: its episodes by the robot's time, and the time of learning."""
         write_atomically(path, (_csv([list(rows[0])]) + _csv([list(row.values()) for row in rows])).encode()
                          if rows else b'')
 
