@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import shared_control_ros
 from shared_control.contract import SERVICES, TOPICS
+from shared_control_bringup.waits import Waits
 from shared_control_ros.sros2_policy import ENCLAVES, policy
 
 COMMITTED = Path(shared_control_ros.__file__).parent / 'config' / 'sros2_policy.xml'
@@ -50,14 +51,16 @@ def test_what_moves_the_robot_may_come_from_one_node_only(allowed):
 
 def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_path, monkeypatch):
     monkeypatch.setenv('PYTHONPATH', str(STAND_IN))  # of panda-python
-    assert NODES.keys() == allowed.keys() - {'operator'}, 'add new nodes to shared_control_ros.interfaces'
+    assert NODES.keys() == allowed.keys() - {'operator', 'session'}, 'add new nodes to shared_control_ros.interfaces'
     NODES['session_recorder_node'] = {'output': tmp_path / 'bag'}
     NODES['panda_bridge_node'] = {'hostname': 'here'}
     running = [start_node(name, **parameters) for name, parameters in NODES.items()]
     for node in running:
         node.wait_for_log('ready', 60.0)
+    waits = Waits([], print)  # of a session
+    waits.open()
     node = observer.node
-    observer.spin(lambda: NODES.keys() <= set(node.get_node_names()), 30.0)
+    observer.spin(lambda: {'session', *NODES} <= set(node.get_node_names()), 30.0)
     observer.spin_for(1.0)  # the endpoints are told after the names
     for name, rules in allowed.items():
         if name == 'operator':
@@ -71,3 +74,4 @@ def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_p
             assert done or what not in ('publish', 'reply'), f'{name} was not looked at'
             for entry, types in found(name, '/'):
                 assert types == [TYPES.get(entry, types[0])], f'{name}: {entry} is not of the type of the contract'
+    waits.close()

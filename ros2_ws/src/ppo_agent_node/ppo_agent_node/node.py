@@ -65,8 +65,9 @@ class PpoAgentNode(Callbacks):
             node, 'episode_seconds', chosen.task.episode_seconds, 'The longest an episode of teaching lasts.',
             unit='s', minimum=1.0, maximum=600.0)
         minutes = declare(
-            node, 'max_minutes', 45.0, "Teach for this long at the most, by the robot's time and that of learning; what "
-            'an earlier run in output has used is counted, pauses are not.', unit='min', minimum=0.1, maximum=1440.0)
+            node, 'max_minutes', 45.0, "Teach for this long at the most, by the robot's time and that of learning; "
+            'what an earlier run in output has used is counted, pauses are not.',
+            unit='min', minimum=0.1, maximum=1440.0)
         self._test_episodes = declare(
             node, 'test_episodes', 0, 'Test the policy alone with so many episodes on the graph, in the end.',
             minimum=0, maximum=1000)

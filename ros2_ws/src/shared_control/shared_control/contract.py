@@ -103,11 +103,17 @@ HUMAN_SHARE = Topic(
     'training/human_share', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz',
     r'0..1: mean of \|M_yh\| / (\|M_yh\| + \|M_yai\|) over the episode so far', latched=True)
 SUCCESS = Topic('training/success', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of a test', '0..1', latched=True)
+WAITING = Topic(
+    'session/waiting', 'std_msgs/msg/String', 1, 'session', 'screens', 'on change, then 1 Hz',
+    'what the session waits for and since when; in a second line the newest warning about it; empty: nothing. '
+    'Not in bags',
+    latched=True, in_bag=False)
 
 TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
 TOPICS = (
     JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH,
-    HUMAN_APPLIED, AGENT_APPLIED, BALL, DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING)
+    HUMAN_APPLIED, AGENT_APPLIED, BALL, DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING,
+    WAITING)
 BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
 """What a recorder records."""
 

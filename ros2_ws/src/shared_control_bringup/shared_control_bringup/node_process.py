@@ -1,10 +1,12 @@
 """One node of the graph as a process."""
 
 import os
+import re
 import select
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -19,6 +21,9 @@ NICENESS = 10
 """Niceness of the nodes outside the control loop, on a machine with one core."""
 UNUSABLE = 2
 """Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
+LOG_END = 16_384
+"""Bytes of a log in which a warning is new enough to be of interest."""
+_WARNING = re.compile(r'^\[(?:WARN|ERROR|FATAL)\] \[([\d.]+)\] \[[^\]]*\]: (.+)$', re.MULTILINE)
 
 
 class NodeProcess:
@@ -43,6 +48,8 @@ class NodeProcess:
         self._environment = dict(environment or {})
         self.log = log
         self.starts = 0
+        self.started = 0.0
+        """When it was started last, s of the monotonic clock."""
         self._command = [sys.executable, '-m', node_module(name), '--ros-args', '--params-file', str(parameters),
                          '--disable-external-lib-logs']
         self._in_foreground = in_foreground
@@ -52,6 +59,7 @@ class NodeProcess:
     def start(self) -> None:
         """Start it, or start it again."""
         self.starts += 1
+        self.started = time.monotonic()
         self._close_ready_pipe()
         self._ready_pipe, theirs = os.pipe()
         environment = {**node_environment(), **self._environment, READY_FD: str(theirs)}
@@ -124,6 +132,16 @@ class NodeProcess:
             self._process.kill()
             self._process.wait()
         self._close_ready_pipe()
+
+    def newest_warning(self) -> tuple[float, str] | None:
+        """The newest warning or error in the end of its log: when it came, s of the time of the day, and its text."""
+        try:
+            with self.log.open('rb') as log:
+                log.seek(max(self.log.stat().st_size - LOG_END, 0))
+                found = _WARNING.findall(log.read().decode(errors='replace'))
+        except OSError:
+            return None
+        return (float(found[-1][0]), found[-1][1]) if found else None
 
     def last_error(self) -> str:
         """The last line it wrote that says something."""

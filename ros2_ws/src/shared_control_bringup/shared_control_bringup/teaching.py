@@ -13,6 +13,7 @@ from .node_process import NodeProcess
 from .page import Page
 from .progress import EpisodePrinter
 from .supervisor import SessionError, StoppedByNode, Supervisor
+from .waits import Waits
 
 POLL_SECONDS = 0.1
 
@@ -53,15 +54,22 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
             print(text, flush=True)
 
     (leader,), (stopper,) = named(Role.LEADER), named(Role.STOPPER)
-    supervisor = Supervisor(nodes, leader=leader, stopper=stopper, say=say, attend=interrupts.check)
     episodes = EpisodePrinter(folder.episodes, say)
+    waits = Waits(nodes, say)
+
+    def attend() -> None:
+        waits.poll()
+        interrupts.check()
+
+    supervisor = Supervisor(nodes, leader=leader, stopper=stopper, say=say, attend=attend)
     error: SessionError | None = None
     try:
         supervisor.start()
         if page:
             print(f'\n    Teach here: {page.address}\n', flush=True)  # with the token, hence not into the log
+        waits.open()
         while supervisor.poll():
-            interrupts.check()
+            attend()
             episodes.poll()
             time.sleep(POLL_SECONDS)
         end = End.DONE
@@ -70,6 +78,7 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     except SessionError as problem:
         end, error = End.FAILED, problem
     finally:
+        waits.close()
         supervisor.stop()
         episodes.poll()
         log.close()

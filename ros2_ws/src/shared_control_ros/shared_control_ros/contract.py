@@ -69,6 +69,7 @@ TIME_LEFT = ros_topic(table.TIME_LEFT)
 EPISODE_RETURN = ros_topic(table.EPISODE_RETURN)
 HUMAN_SHARE = ros_topic(table.HUMAN_SHARE)
 SUCCESS = ros_topic(table.SUCCESS)
+WAITING = ros_topic(table.WAITING)
 
 TRAINING = tuple(map(ros_topic, table.TRAINING))
 TOPICS = tuple(map(ros_topic, table.TOPICS))

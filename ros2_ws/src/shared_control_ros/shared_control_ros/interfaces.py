@@ -46,7 +46,7 @@ INTERFACES = {
         serves=CONTROLLER),
     'teleop_key_node': Interface(
         publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.DIAGNOSTICS),
-        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
     'ppo_agent_node': Interface(
         publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
@@ -60,11 +60,14 @@ INTERFACES = {
                contract.PHASE)),
     'teach_page_node': Interface(
         publishes=(contract.KEYS,),
-        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),
         calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE, contract.START_SERVICE, contract.REPEAT_SERVICE)),
     'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), subscribes=contract.BAG_TOPICS),
     'robot_view_node': Interface(
         publishes=('robot_description', 'markers', '/tf', contract.DIAGNOSTICS), subscribes=DISPLAYED),
+    'session': Interface(
+        publishes=(contract.WAITING,),
+        subscribes=(contract.PHASE, contract.EPISODE_RETURN, contract.DIAGNOSTICS)),
     'operator': Interface(
         publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE),
         subscribes=contract.TOPICS,

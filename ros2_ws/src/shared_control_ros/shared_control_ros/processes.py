@@ -9,7 +9,7 @@ from pathlib import Path
 
 from shared_control.processes import leave_with_the_parent
 
-__all__ = ['leave_with_the_parent', 'node_environment', 'node_module']
+__all__ = ['adopt_node_environment', 'leave_with_the_parent', 'node_environment', 'node_module']
 
 DDS_PROFILE = Path(__file__).parent / 'config' / 'this_machine.xml'
 _DDS_DECISIONS = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
@@ -57,6 +57,14 @@ def node_environment() -> dict[str, str]:
         if sys.prefix not in environment.get('LD_LIBRARY_PATH', ''):  # replaced since this process began
             environment.pop(_LIBRARIES_FOUND, None)
     return environment
+
+
+def adopt_node_environment() -> None:
+    """Give this process the environment for nodes."""
+    environment = node_environment()
+    for variable in os.environ.keys() - environment.keys():
+        del os.environ[variable]
+    os.environ.update(environment)
 
 
 def _has_its_own_ros() -> bool:

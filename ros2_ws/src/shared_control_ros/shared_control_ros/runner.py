@@ -1,6 +1,5 @@
 """Start and stop of a node, the same for all of them."""
 
-import os
 import signal
 import sys
 from collections.abc import Callable
@@ -13,7 +12,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from .parameters import ParameterError
-from .processes import node_environment
+from .processes import adopt_node_environment
 from .readiness import tell_ready
 from .real_time import put_loop_above_other_threads
 
@@ -53,10 +52,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
         print((sys.modules[make.__module__].__doc__ or '').strip())
         print('\nParameters: --ros-args -p NAME:=VALUE or --ros-args --params-file FILE; the README lists them.')
         return 0
-    environment = node_environment()  # a node that was started by hand keeps to this machine, too
-    for variable in os.environ.keys() - environment.keys():
-        del os.environ[variable]
-    os.environ.update(environment)
+    adopt_node_environment()  # a node that was started by hand keeps to this machine, too
     rclpy.init(args=[*args, *_log_arguments()], signal_handler_options=SignalHandlerOptions.NO)
     stop = Stop()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

@@ -67,7 +67,8 @@ class LiveDesk:
             phase=self._lesson.phase, episode=self._lesson.episode, time_left=scene.time_left,
             human_share=scene.human_share, success=scene.success, keys=[int(now < lit) for lit in self._lit_until],
             hand=self._hand, paused=self._requests.paused, silent_for=scene.simulator_silent_for,
-            notice=scene.message.strip(), time=max(self._observer.stamp_ns, 0) * 1e-9, history=self._history)
+            notice=scene.message.strip() or (f'Waiting {scene.waiting}'.replace('\n', ': ') if scene.waiting else ''),
+            time=max(self._observer.stamp_ns, 0) * 1e-9, history=self._history)
 
     def _follow(self, scene: Scene) -> None:
         """Bring the scene and the list of episodes up to date."""

@@ -35,8 +35,8 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
         (2, ''),
         (3, _share(scene, width, unicode)),
         (3, _returns(scene, width, unicode)),
-        (7, scene.message), (8, _help(width, unicode))]
-    if not scene.message:
+        (7, _message(scene)), (8, _help(width, unicode))]
+    if not _message(scene):
         below[-2] = (1, '')
     for importance in range(9):
         if height - len(above) - len(below) >= min(_MIN_PICTURE, height // 3):
@@ -62,6 +62,8 @@ def _title(scene: Scene, width: int) -> str:
 def _headline(scene: Scene, width: int) -> str:
     if scene.paused:
         word, text = 'PAUSED', 'Everything stands still. Press p to go on.'
+    elif scene.waiting:
+        word, text = 'WAITING', scene.waiting.partition('\n')[0]
     elif scene.simulator_silent_for is not None and scene.phase in (None, 'teach', 'test'):
         word = 'WAITING FOR THE SIMULATOR'
         silent = scene.simulator_silent_for
@@ -71,6 +73,11 @@ def _headline(scene: Scene, width: int) -> str:
     else:
         word, text = scene.phase.upper(), _PHASES.get(scene.phase, '')
     return _fitting(width, f' [ {word} ]  {text}', f' [ {word} ]  {text.partition(":")[0].partition(". ")[0]}')
+
+
+def _message(scene: Scene) -> str:
+    """The latest notice to the person, or why the session waits."""
+    return scene.message or scene.waiting.partition('\n')[2]
 
 
 def _tilt(scene: Scene, width: int) -> str:

@@ -75,6 +75,8 @@ def test_bars_keep_to_their_place_beyond_the_scale():
     ({'simulator_silent_for': 3.2}, '[ WAITING FOR THE SIMULATOR ]  No /joint_states for 3 s.'),
     ({'simulator_silent_for': float('inf'), 'phase': None}, 'No /joint_states yet.'),
     ({'simulator_silent_for': 3.2, 'phase': 'learn'}, '[ LEARN ]'),
+    ({'waiting': 'for a tick since 14:00 (7 s)\nsimulator: no torque'}, '[ WAITING ]  for a tick since 14:00 (7 s)'),
+    ({'waiting': 'for a tick since 14:00 (7 s)\nsimulator: no torque'}, 'simulator: no torque'),
     ({'ball_height': -0.1}, 'THE BALL HAS FALLEN'),
     ({'ball_along': 0.3}, 'THE BALL HAS FALLEN'),
     ({'hand': 'tutor'}, 'human share'),

@@ -38,6 +38,7 @@ class Observer:
         self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
         self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
         self._success = Polled(node, contract.SUCCESS, qos_profile=latest)
+        self._waiting = Polled(node, contract.WAITING, qos_profile=latest)
         self._returns = Polled(node, contract.EPISODE_RETURN, qos_profile=contract.qos_latched())
         self._stamp_ns = -1
         self._moved_at = -math.inf
@@ -64,6 +65,8 @@ class Observer:
         scene.time_left = self._latest(self._time_left, scene.time_left)
         scene.human_share = self._latest(self._share, scene.human_share)
         scene.success = self._latest(self._success, scene.success)
+        if (waiting := self._waiting.take()) is not None:
+            scene.waiting = waiting.data
         while (message := self._returns.take()) is not None:
             if math.isfinite(message.data):
                 scene.returns.append(message.data)

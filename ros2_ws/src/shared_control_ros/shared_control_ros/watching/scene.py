@@ -49,5 +49,7 @@ class Scene:
     paused: bool = False
     simulator_silent_for: float | None = None
     """How long the simulator has said nothing, s; None: it runs."""
+    waiting: str = ''
+    """What the session waits for, since when, and in a second line why; empty: nothing, or there is no session."""
     message: str = ''
     """The latest notice to the person."""
