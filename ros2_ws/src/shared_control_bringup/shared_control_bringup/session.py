@@ -1,6 +1,7 @@
 """``shared-control session``: teach the robot, keep everything, measure what it has learned."""
 
 import argparse
+import os
 import sys
 import time
 from dataclasses import replace
@@ -43,9 +44,9 @@ def run(args: argparse.Namespace) -> int:
     params_file = getattr(args, 'params_file', ros_parameters.DEFAULTS) if earlier is None else earlier.given_parameters
     parameters = ros_parameters.load(params_file)
     given_parameters = params_file.read_bytes()
-    if settings.tutor == 'keyboard' and not _has_terminal():
-        raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
-    shows_screen = _has_terminal() and settings.screen and settings.tutor != 'page'
+    if settings.tutor == 'keyboard':
+        _require_terminal()
+    shows_screen = _has_terminal() and _can_draw() and settings.screen and settings.tutor != 'page'
     path = earlier.path if earlier else getattr(args, 'output', None) or (
         Path('out/sessions') / time.strftime('%Y-%m-%d_%H-%M-%S'))
     with Neighbours() as neighbours:
@@ -149,6 +150,18 @@ def _complete_bag(folder: SessionFolder, restarts: int) -> None:
             annotate(folder.bag, RECORD, bag_metadata.pack(folder, restarts))
     except OSError as error:
         print(f'shared-control: {error}', file=sys.stderr)
+
+
+def _require_terminal() -> None:
+    if not _has_terminal():
+        raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
+    if not _can_draw():
+        raise ValueError(f'TERM is {os.environ.get("TERM", "")!r}: no keys can be read from a terminal that cannot draw; '
+                         'set TERM to what it is (xterm-256color), or use --tutor page')
+
+
+def _can_draw() -> bool:
+    return os.environ.get('TERM', '') not in ('', 'dumb')
 
 
 def _has_terminal() -> bool:

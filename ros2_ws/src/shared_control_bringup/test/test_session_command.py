@@ -156,6 +156,17 @@ def test_what_cannot_change_when_a_session_goes_on_is_refused(session, tmp_path,
     assert content(folder) == before
 
 
+@pytest.mark.parametrize('term', ['dumb', ''])
+def test_a_terminal_that_cannot_draw_is_refused_where_keys_are_to_be_read(session, tmp_path, monkeypatch, capsys, term):
+    monkeypatch.setattr(command, '_has_terminal', lambda: True)
+    monkeypatch.setenv('TERM', term)
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'keyboard', '--output', folder) == 2
+    assert f'TERM is {term!r}' in capsys.readouterr().err and not folder.exists()
+    assert session('--tutor', 'sim', '--output', folder) == 0
+    assert SessionFolder(folder).ros_parameters('teleop_key_node')['screen'] == 'off', 'lines are printed instead'
+
+
 def test_a_session_that_is_taught_goes_on_with_its_test_alone(session, tmp_path, capsys):
     folder = SessionFolder(tmp_path / 'session')
     session.end = End.STOPPED
