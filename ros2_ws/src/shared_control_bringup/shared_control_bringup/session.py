@@ -156,8 +156,8 @@ def _require_terminal() -> None:
     if not _has_terminal():
         raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
     if not _can_draw():
-        raise ValueError(f'TERM is {os.environ.get("TERM", "")!r}: no keys can be read from a terminal that cannot draw; '
-                         'set TERM to what it is (xterm-256color), or use --tutor page')
+        raise ValueError(f'TERM is {os.environ.get("TERM", "")!r}: a terminal that cannot draw is not read from; set TERM '
+                         'to what it is (xterm-256color), or use --tutor page')
 
 
 def _can_draw() -> bool:
