@@ -156,7 +156,7 @@ def _require_terminal() -> None:
     if not _has_terminal():
         raise ValueError('there is no terminal to press keys in: use --tutor sim, or start the session from one')
     if not _can_draw():
-        raise ValueError(f'TERM is {os.environ.get("TERM", "")!r}: a terminal that cannot draw is not read from; set TERM '
+        raise ValueError(f'TERM is {os.environ.get("TERM", "")!r}: no keys are read from such a terminal; set TERM '
                          'to what it is (xterm-256color), or use --tutor page')
 
 
