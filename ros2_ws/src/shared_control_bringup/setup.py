@@ -28,6 +28,9 @@ setup(
     license='Apache-2.0',
     entry_points={
         'console_scripts': ['session_recorder_node = shared_control_bringup.recorder.node:main'],
-        'shared_control.commands': ['session = shared_control_bringup.session:add_command'],
+        'shared_control.commands': [
+            'doctor = shared_control_bringup.doctor.command:add_command',
+            'session = shared_control_bringup.session:add_command',
+        ],
     },
 )

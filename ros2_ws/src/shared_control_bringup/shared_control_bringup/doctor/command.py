@@ -1,0 +1,41 @@
+"""``shared-control doctor``."""
+
+import argparse
+from collections.abc import Iterator
+
+from . import machine
+from .finding import Finding, Level
+from .middleware import middleware
+from .variables import variables
+
+
+def add_command(commands: argparse._SubParsersAction) -> None:
+    """Add ``doctor`` to argparse's subparsers."""
+    parser = commands.add_parser(
+        'doctor', help='what of this machine a session depends on, and what to mend',
+        description='Check this machine: versions, variables, cores, real-time limits, shared memory, browser, '
+                    'middleware and domain. Prints a line for each and the remedy where something is wrong; changes '
+                    'nothing. The exit code is 1 when a session would not run.')
+    parser.set_defaults(run=run)
+
+
+def findings() -> Iterator[Finding]:
+    """All that is checked, the quick ones first."""
+    yield from machine.versions()
+    yield from variables()
+    yield from machine.cores()
+    yield from machine.real_time()
+    yield from machine.shared_memory()
+    yield from machine.browser()
+    yield from middleware()
+
+
+def run(_: argparse.Namespace) -> int:
+    """Print what was found and give the exit code."""
+    levels = []
+    for finding in findings():
+        print(finding, flush=True)
+        levels.append(finding.level)
+    faults, notes = levels.count(Level.FAULT), levels.count(Level.NOTE)
+    print(f'\n{faults} to mend before a session runs, {notes} to note' if faults or notes else '\nnothing to mend')
+    return 1 if faults else 0

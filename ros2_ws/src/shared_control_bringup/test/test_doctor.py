@@ -1,0 +1,97 @@
+"""``shared-control doctor`` on a healthy machine, and on machines that were made sick for real."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+
+def examine(*under: str, **variables: str):
+    """Exit code and lines of the command, started by the command ``under`` and with ``variables``."""
+    done = subprocess.run([*under, sys.executable, '-m', 'shared_control', 'doctor'], stdin=subprocess.DEVNULL,
+                          env={**os.environ, **variables}, capture_output=True, text=True, timeout=120, check=False)
+    assert not done.stderr, done.stderr
+    return done.returncode, done.stdout.splitlines()
+
+
+def line_of(lines, subject):
+    """Level and text of what was found of a subject, and the remedy below it."""
+    [number] = [number for number, line in enumerate(lines) if line[7:].startswith(subject)]
+    remedy = lines[number + 1].strip() if lines[number + 1].startswith(' ' * 9) else ''
+    return lines[number].split(maxsplit=1)[0], lines[number], remedy
+
+
+def test_a_healthy_machine(domain_id):
+    code, lines = examine()
+    assert code == 0
+    assert line_of(lines, f'ROS, domain {domain_id}')[0] == 'ok'
+    assert 'numpy' in line_of(lines, 'packages')[1]
+    assert lines[0].startswith('ok     system: Python 3.')
+    assert not [line for line in lines if line.startswith('FAULT')]
+
+
+@pytest.mark.parametrize(('name', 'value', 'level', 'code'), [
+    ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF', 'FAULT', 1),
+    ('FASTRTPS_DEFAULT_PROFILES_FILE', '/no/profile.xml', 'FAULT', 1),
+    ('ROS_DOMAIN_ID', 'mine', 'FAULT', 1),
+    ('RMW_IMPLEMENTATION', 'rmw_cyclonedds_cpp', 'note', 0)])
+def test_variables_of_another_shell(domain_id, monkeypatch, name, value, level, code):
+    if level == 'note':
+        for variable in ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE'):  # as in a shell
+            monkeypatch.delenv(variable)
+    ended, lines = examine(**{name: value})
+    found, _, remedy = line_of(lines, f'{name}: ')
+    assert (ended, found) == (code, level)
+    assert f'unset {name}' in remedy
+
+
+def test_a_domain_that_a_simulator_has(start_node, domain_id):
+    start_node('panda_sim_node').wait_for_log('ready')
+    code, lines = examine()
+    level, text, _ = line_of(lines, f'ROS, domain {domain_id}')
+    assert (code, level) == (1, 'FAULT')
+    assert '/panda_sim_node' in text and 'set ROS_DOMAIN_ID to another number' in text
+
+
+def test_little_shared_memory(domain_id):
+    if subprocess.run(['unshare', '--mount', 'true'], capture_output=True, check=False).returncode:
+        pytest.skip('this user may not mount')
+    mount = 'mount -t tmpfs -o size=1m tmpfs /dev/shm && exec "$@"'
+    code, lines = examine('unshare', '--mount', 'sh', '-c', mount, '-')
+    level, text, remedy = line_of(lines, '/dev/shm')
+    assert (code, level) == (1, 'FAULT')
+    assert 'of 1 MB free' in text and 'remount,size=' in remedy
+
+
+def test_no_real_time_limit(domain_id):
+    under = ['prlimit', '--rtprio=0:0']
+    if os.geteuid() == 0:  # who has the capability needs no limit
+        under = ['setpriv', '--bounding-set=-sys_nice', '--inh-caps=-sys_nice', *under]
+    code, lines = examine(*under)
+    level, text, remedy = line_of(lines, 'real-time priority')
+    assert (code, level) == (0, 'note')
+    assert 'ulimit -r is 0' in text and 'limits.d' in remedy
+
+
+def test_no_browser(domain_id, tmp_path):
+    code, lines = examine(PATH=str(tmp_path))
+    level, _, remedy = line_of(lines, 'Chromium')
+    assert (code, level) == (0, 'note')
+    assert remedy.endswith('tools/install_browser.sh')
+
+
+def test_it_imports_nothing_heavy():
+    script = ('import sys; from shared_control_bringup.doctor.command import findings; '
+              'print(*(name.partition(".")[0] for name in sys.modules))')
+    done = subprocess.run([sys.executable, '-c', script], capture_output=True, text=True, check=True)
+    heavy = {'rclpy', 'torch', 'pybullet', 'pandas', 'matplotlib', 'gymnasium', 'pinocchio', 'numpy'}
+    assert not set(done.stdout.split()) & heavy
+
+
+def test_the_browser_is_the_one_on_the_path(domain_id):
+    if not shutil.which('chromedriver'):
+        pytest.skip('no Chromium here')
+    _, lines = examine()
+    assert line_of(lines, 'Chromium')[0] == 'ok'
