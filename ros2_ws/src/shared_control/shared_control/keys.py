@@ -65,6 +65,11 @@ BUTTONS = 3
 """Buttons that every source of keys has: left, right, space."""
 
 
+def count_buttons(keys: KeyMap) -> int:
+    """How many buttons a source of ``keys`` sends: left, right, space, and all up to the last that is used."""
+    return max(BUTTONS, *(key + 1 for key in keys))
+
+
 class KeyPresses:
     """Finds presses (rising edges) in the button states that one source of keys repeats."""
 

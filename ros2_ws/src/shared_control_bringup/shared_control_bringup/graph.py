@@ -79,8 +79,9 @@ NODES = (
     SessionNode('sim_tutor_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'profile': s.settings.profile,
         'seed': s.settings.seed}, tutor='sim'),
-    SessionNode('teach_page_node', lambda s: {'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
-                tutor='page'),
+    SessionNode('teach_page_node', lambda s: {
+        'task': _of_the_task(s.settings)['task'], 'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
+        tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {
         'task': s.settings.task, 'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
         'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',

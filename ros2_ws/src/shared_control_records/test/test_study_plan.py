@@ -44,6 +44,11 @@ def test_every_participant_in_every_condition_from_one_seed(plan_file):
     assert load_plan(plan_file(PLAN.replace('seed: 3', 'seed: 4'))).participants != plan.participants
 
 
+def test_a_condition_may_be_of_another_task(plan_file):
+    coached, alone = load_plan(plan_file(PLAN.replace('episodes: 5', 'episodes: 5, task: plate'))).conditions
+    assert (coached.task, coached.preset, alone.task) == ('plate', 'coached', '')
+
+
 def test_simulated_participants_differ_around_their_profile():
     drawn = [draw_tutor('high', 0.15, seed) for seed in range(200)]
     for field in fields(drawn[0]):
@@ -72,6 +77,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     ('expert: 1', 'expert: 0', 'participants.simulated.expert: Input should be greater than or equal to 1, found 0'),
     ('expert: 1', 'expert: 2000000000', 'participants.simulated.expert: Input should be less than or equal to 1000'),
     ('expert: 1', 'wizard: 1', "participants.simulated.wizard: no simulated tutor 'wizard'; there are expert"),
+    ('episodes: 5', 'task: juggle', "no task 'juggle'; there are balance, detour, plate"),
     ('coached: {', 'coach: {', "conditions.coach.preset: no learner 'coach'; there are autonomous"),
     ('episodes: 5', 'episodes: five', "conditions.coached.episodes: Input should be a valid integer, found 'five'"),
     ('episodes: 5', 'epochs: 5', "conditions.coached: no key 'epochs'; there are episodes, evaluate_every, preset"),

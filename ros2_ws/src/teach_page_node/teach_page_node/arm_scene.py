@@ -5,8 +5,10 @@ import pinocchio as pin
 from nicegui import ui
 from shared_control.robot.model import RobotModel
 from shared_control.scene import Scene
+from shared_control.tasks.task import Task
 
-_TRAY_COLOUR, _BALL_COLOUR, _GOAL_COLOUR, _FLOOR_COLOUR = '#3d5068', '#f2b705', '#35b37e', '#cfd8e0'
+_TRAY_COLOUR, _OBSTACLE_COLOUR, _BALL_COLOUR, _GOAL_COLOUR, _FLOOR_COLOUR = (
+    '#3d5068', '#a83a32', '#f2b705', '#35b37e', '#cfd8e0')
 _FLAT = 0.0004
 """Height of what is painted on the tray, m."""
 _EVERY_FRAME = 1000
@@ -15,14 +17,14 @@ _CAMERA = {'x': -0.43, 'y': 0.82, 'z': 1.14, 'look_at_x': -0.43, 'look_at_y': 0.
 """From base +y: base +x, where the left key rolls the ball, is on the left."""
 
 
-def build_scene(tray: Scene) -> ui.scene:
+def build_scene(task: Task) -> ui.scene:
     """A scene with named groups ``joint1``, ``joint2`` ..., ``ball`` (base frame) and ``shadow`` (tray frame)."""
     robot = RobotModel()
     model = robot.pin_model
     with ui.scene(grid=False, background_color='#eaf0f5', fps=_EVERY_FRAME, click_events=[],
                   camera=ui.scene.perspective_camera(fov=40)) as scene:
         scene.box(3.0, 3.0, 0.02).move(-0.2, 0.0, -0.01).material(_FLOOR_COLOUR)
-        scene.sphere(tray.ball.radius, 24, 16).material(_BALL_COLOUR).with_name('ball')
+        scene.sphere(task.scene.ball.radius, 24, 16).material(_BALL_COLOUR).with_name('ball')
         _link(scene, 0)
         with _Nested() as nested:
             for joint in range(1, robot.spec.dof + 1):
@@ -30,7 +32,7 @@ def build_scene(tray: Scene) -> ui.scene:
                 nested.enter(scene.group().with_name(f'joint{joint}'))
                 _link(scene, joint)
             nested.enter(_placed(scene, model.frames[model.getFrameId(robot.spec.tool_frame)].placement))
-            _tray(scene, tray)
+            _tray(scene, task.scene, len(task.axes) == 1)
     scene.move_camera(**_CAMERA, duration=0.0)
     return scene
 
@@ -60,11 +62,15 @@ def _link(scene: ui.scene, number: int) -> None:
     scene.gltf(f'/static/meshes/link{number}.glb')
 
 
-def _tray(scene: ui.scene, tray: Scene) -> None:
-    """The boxes of the task, the goal in the middle, and the ball's shadow."""
+def _tray(scene: ui.scene, tray: Scene, one_axis: bool) -> None:
+    """The boxes of the task, the goal (a stripe across the one axis, or a disc), and the ball's shadow."""
     for box in tray.boxes:
-        scene.box(*box.size).move(*box.centre).material(_TRAY_COLOUR)
-    goal = scene.box(2 * tray.goal_radius, 1.96 * tray.half_width, _FLAT)
-    goal.move(0.0, 0.0, tray.surface + _FLAT).material(_GOAL_COLOUR)
+        scene.box(*box.size).move(*box.centre).material(_OBSTACLE_COLOUR if box.is_obstacle else _TRAY_COLOUR)
+    goal: ui.scene.box | ui.scene.cylinder
+    if one_axis:
+        goal = scene.box(2 * tray.goal_radius, 1.96 * tray.half_width, _FLAT)
+    else:
+        goal = scene.cylinder(tray.goal_radius, tray.goal_radius, _FLAT, 32).rotate(np.pi / 2, 0.0, 0.0)
+    goal.move(*tray.goal, tray.surface + _FLAT).material(_GOAL_COLOUR)
     flat = scene.cylinder(tray.ball.radius, tray.ball.radius, _FLAT, 24).rotate(np.pi / 2, 0.0, 0.0)
     flat.material('#000000', 0.45).with_name('shadow')

@@ -2,6 +2,8 @@
 
 from typing import Any, Protocol
 
+from shared_control.tasks.task import Task
+
 from .picture import Picture
 
 
@@ -9,6 +11,8 @@ class Desk(Protocol):
     """A live lesson or a replay."""
 
     is_replay: bool
+    task: Task
+    """What is taught."""
     is_over: bool
     """The server is to end."""
 
@@ -16,7 +20,7 @@ class Desk(Protocol):
         """What is to be seen now; called once a picture."""
 
     def press(self, buttons: list[int]) -> None:
-        """The teacher's buttons (left, right, space), 0 or 1; again and again while nothing changes."""
+        """The teacher's buttons, in the order of ``Key``, 0 or 1; again and again while nothing changes."""
 
     def let_go(self) -> None:
         """The teacher has gone, or looks elsewhere: M_yh = 0."""

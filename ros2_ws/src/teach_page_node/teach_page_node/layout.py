@@ -1,18 +1,24 @@
 """What stands where on the page. What moves is moved by ``static/page.js``, which finds it by ``data-part``."""
 
 import json
+from html import escape
 from typing import Any
 
 from nicegui import ui
+from shared_control.keys import Key, count_buttons
 from shared_control.scene import Scene
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
+from shared_control.wrench import AXIS_NAMES
 
 from .arm_scene import build_scene
+from .from_above import view_from_above
 
 CHART_SECONDS = 15
 """How far back the chart of the moments reaches, s."""
-_KEYS = (('left', '←', 'tip left'), ('space', '␣', 'let go'), ('right', '→', 'tip right'))
+_KEYS = {Key.LEFT: ('←', 'tip left'), Key.UP: ('↑', 'tip away'), Key.SPACE: ('␣', 'let go'),
+         Key.DOWN: ('↓', 'tip near'), Key.RIGHT: ('→', 'tip right')}
+"""In the order in which they stand on the page."""
 _MOMENTS = (('human', 'you'), ('agent', 'robot'), ('applied', 'together'))
 
 
@@ -20,21 +26,24 @@ def build(is_replay: bool, task: Task = BALANCE) -> None:
     """One page, for ``task``."""
     ui.add_head_html('<link rel="stylesheet" href="/static/page.css">'
                      '<script type="module" src="/static/no_graphics_card.js"></script>')
-    ui.query('body').classes('replay' if is_replay else 'live')
+    from_above = len(task.axes) > 1
+    ui.query('body').classes(f'{"replay" if is_replay else "live"} {"two-axes" if from_above else "one-axis"}')
     with ui.element('main'):
         _header()
         with ui.element('section').classes('stage'):
-            scene = build_scene(task.scene).classes('scene').props('data-part=scene')
+            scene = build_scene(task).classes('scene').props('data-part=scene')
             with ui.element('div').classes('close-view'):
                 _moments()
-                ui.html(_close_view(task.scene), sanitize=False).classes('drawing')
+                drawing = view_from_above(task.scene) if from_above else _close_view(task.scene)
+                ui.html(drawing, sanitize=False).classes('drawing')
             if is_replay:
                 _player()
             else:
-                _keys()
+                _keys(task)
         with ui.element('aside'):
-            _help(is_replay)
-            charts = {'moments': _chart('Moments, N m', _moment_options(task)),
+            _help(is_replay, task)
+            title = 'Moments, N m (about x dashed)' if from_above else 'Moments, N m'
+            charts = {'moments': _chart(title, _moment_options(task)),
                       'returns': _chart('Return of each episode', _episode_options('#4263eb')),
                       'shares': _chart('Human share of each episode, %', _episode_options('#e8590c', 100))}
             if not is_replay:
@@ -49,7 +58,8 @@ def _numbers(task: Task) -> dict[str, Any]:
     """What the page's scripts take from the task: lengths, m; durations, s; moments, N m."""
     tray = task.scene
     return {'half_length': tray.half_length, 'half_width': tray.half_width, 'surface': tray.surface,
-            'moment_limit': float(task.limit.max()), 'chart_seconds': CHART_SECONDS,
+            'axes': list(task.axes), 'keys': [key.name.lower() for key in list(Key)[:count_buttons(task.keys)]],
+            'goal': list(tray.goal), 'moment_limit': float(task.limit.max()), 'chart_seconds': CHART_SECONDS,
             'episode_seconds': {'teach': task.episode_seconds, 'test': task.test_seconds}}
 
 
@@ -75,10 +85,12 @@ def _header() -> None:
         _text('role').classes('role')
 
 
-def _keys() -> None:
+def _keys(task: Task) -> None:
     with ui.element('div').classes('keys'):
-        for name, sign, what in _KEYS:
-            with ui.element('button').classes('key').props(f'data-key={name} tabindex=-1'):
+        for key, (sign, what) in _KEYS.items():
+            if key is not Key.SPACE and key not in task.keys:
+                continue
+            with ui.element('button').classes('key').props(f'data-key={key.name.lower()} tabindex=-1'):
                 ui.label(sign).classes('sign')
                 ui.label(what)
 
@@ -93,9 +105,11 @@ def _player() -> None:
                 ui.html(f'{speed} ×', sanitize=False, tag='option').props(f'value={speed}')
 
 
-def _help(is_replay: bool) -> None:
+def _help(is_replay: bool, task: Task) -> None:
+    live = _HELP if len(task.axes) == 1 else (
+        f'{escape(task.instruction)} The goal is <b class="goal">green</b>.', *_HELP_FROM_ABOVE)
     with ui.element('ol').classes('help'):
-        for line in _REPLAY_HELP if is_replay else _HELP:
+        for line in _REPLAY_HELP if is_replay else live:
             ui.html(line, sanitize=False, tag='li')
 
 
@@ -136,14 +150,18 @@ def _axes() -> dict[str, Any]:
 
 def _moment_options(task: Task) -> dict[str, Any]:
     bound = float(task.limit.max())
-    series = [('human', '#e8590c', 2), ('robot', '#4263eb', 1), ('together', '#868e96', 1)]
+    series = [(f'{name} {AXIS_NAMES[row][-1]}' if len(task.axes) > 1 else name, colour, width, row)
+              for name, colour, width in (('human', '#e8590c', 2), ('robot', '#4263eb', 1), ('together', '#868e96', 1))
+              for row in task.axes]
     return {**_axes(),
             'xAxis': {'type': 'value', 'min': -CHART_SECONDS, 'max': 0, 'interval': 5,
                       'axisLabel': {'formatter': '{value} s'}},
             'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound / 2},
             'series': [{'name': name, 'type': 'line', 'step': 'end', 'symbol': 'none', 'data': [],
-                        'lineStyle': {'color': colour, 'width': width}, 'itemStyle': {'color': colour}}
-                       for name, colour, width in series]}
+                        'lineStyle': {'color': colour, 'width': width,
+                                      'type': 'solid' if row == task.axes[-1] else 'dashed'},
+                        'itemStyle': {'color': colour}}
+                       for name, colour, width, row in series]}
 
 
 def _episode_options(colour: str, top: float | None = None) -> dict[str, Any]:
@@ -159,6 +177,10 @@ _HELP = (
     'Bring the ball to rest on the <b class="goal">green middle</b>.',
     '<kbd>←</kbd> and <kbd>→</kbd> tip the tray, more with each press; <kbd>space</kbd> lets go.',
     'Correct the robot when it errs, let go when it does well.')
+_HELP_FROM_ABOVE = (
+    '<kbd>←</kbd> <kbd>↑</kbd> <kbd>↓</kbd> <kbd>→</kbd> tip the plate, more with each press; <kbd>space</kbd> lets '
+    'go.',
+    _HELP[2])
 _REPLAY_HELP = (
     '<kbd>space</kbd> plays and holds; the slider goes anywhere.',
     '<kbd>←</kbd> and <kbd>→</kbd> go back and on by 5 s.',

@@ -6,7 +6,9 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import BUTTONS, Key, KeyPresses
+from shared_control.keys import Key, KeyPresses, count_buttons
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled, follow_clock
 from shared_control_ros.watching.lesson import Lesson
@@ -28,21 +30,22 @@ class LiveDesk:
 
     is_replay = False
 
-    def __init__(self, node: Node):
+    def __init__(self, node: Node, task: Task = BALANCE):
         self.is_over = False
+        self.task = task
         self._node = node
-        self._observer = Observer(node)
-        self._scene = Scene()
+        self._observer = Observer(node, task)
+        self._scene = Scene(task=task)
         self._lesson = Lesson(node)
         self._restarts = 0
-        self._human = Moment(node, contract.HUMAN_WRENCH)
+        self._human = Moment(node, contract.HUMAN_WRENCH, task)
         self._heard = Polled(node, contract.KEYS, depth=50)
         self._presses: dict[str, KeyPresses] = {}
         self._hand = ''
-        self._lit_until = [0.0] * BUTTONS
+        self._lit_until = [0.0] * count_buttons(task.keys)
         self._history = History()
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * BUTTONS)
+        self._joy = Joy(buttons=[0] * count_buttons(task.keys))
         self._joy.header.frame_id = SOURCE
         self._requests = PageRequests(node, self._tell)
         self._background = Background(node)
@@ -62,7 +65,7 @@ class LiveDesk:
         if now > self._notice_until:
             scene.message = ''
         return Picture(
-            q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch,
+            q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch, tilt=scene.tilt,
             human=self._human.update(now), agent=scene.agent, applied=scene.applied,
             phase=self._lesson.phase, episode=self._lesson.episode, time_left=scene.time_left,
             human_share=scene.human_share, success=scene.success, keys=[int(now < lit) for lit in self._lit_until],
@@ -95,7 +98,7 @@ class LiveDesk:
                 continue  # teleop_key_node complains
             if pressed:
                 self._hand = source
-            for key, down in enumerate(joy.buttons[:BUTTONS]):
+            for key, down in enumerate(joy.buttons[:len(self._lit_until)]):
                 if down:
                     self._lit_until[key] = now + LIT_FOR
 
@@ -108,7 +111,7 @@ class LiveDesk:
 
     def let_go(self) -> None:
         """See :class:`Desk`. The space key says so at once; silence would say it after half a second."""
-        released = [0] * BUTTONS
+        released = [0] * count_buttons(self.task.keys)
         space = released.copy()
         space[Key.SPACE] = 1
         for buttons in (released, space, released):

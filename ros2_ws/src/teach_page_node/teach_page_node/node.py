@@ -10,6 +10,7 @@ import os
 from rclpy.node import Node
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
+from shared_control_ros.task_parameter import declare_task
 
 from .address import TOKEN_VARIABLE
 from .live import LiveDesk
@@ -29,7 +30,7 @@ class TeachPageNode:
                         'empty: taken from the environment, or one that stays for whoever starts the node again.')
         frame_rate = declare(
             node, 'frame_rate', 40.0, 'Pictures that are sent.', unit='Hz', minimum=1.0, maximum=100.0)
-        self._desk = LiveDesk(node)
+        self._desk = LiveDesk(node, declare_task(node, 'What is taught: the tray, and the keys.'))
         given = os.environ.get(TOKEN_VARIABLE, '')
         self._tells_address = not given  # otherwise whoever gave it tells: a session keeps what this node says
         self._server = PageServer(self._desk, host, port, frame_rate, given or token)

@@ -7,6 +7,7 @@ import numpy as np
 
 from .history import History
 
+Moments = tuple[float, ...]
 LIT_FOR = 0.15
 """A key that was pressed is lit for this long at least, s."""
 
@@ -23,12 +24,14 @@ class Picture:
     """(3,), m: along, across and above the tray, in its frame."""
     pitch: float | None = None
     """Pitch of the tray, rad; positive: the left of the picture (base +x) is down."""
-    human: float | None = None
-    """N m"""
-    agent: float | None = None
-    """N m"""
-    applied: float | None = None
-    """The sum as the controller applies it, N m."""
+    tilt: float | None = None
+    """How far the tray is from level, rad."""
+    human: Moments | None = None
+    """Along the task's axes, (k,), N m"""
+    agent: Moments | None = None
+    """Likewise."""
+    applied: Moments | None = None
+    """The sum as the controller applies it, likewise."""
     phase: str | None = None
     episode: int | None = None
     time_left: float | None = None
@@ -38,7 +41,7 @@ class Picture:
     success: float | None = None
     """Share of the last test that succeeded, 0..1."""
     keys: list[int] = field(default_factory=lambda: [0, 0, 0])
-    """Left, right, space: 1 while lit."""
+    """The page's keys in the order of ``Key``: 1 while lit."""
     hand: str = ''
     """The source of the latest key press."""
     paused: bool = False
@@ -55,7 +58,8 @@ class Picture:
         """For the browser, without the history."""
         return {
             'q': _rounded(self.q), 'ball': _rounded(self.ball), 'on_tray': _rounded(self.ball_on_tray),
-            'pitch': _rounded(self.pitch), 'human': _rounded(self.human), 'agent': _rounded(self.agent),
+            'pitch': _rounded(self.pitch), 'tilt': _rounded(self.tilt),
+            'human': _rounded(self.human), 'agent': _rounded(self.agent),
             'applied': _rounded(self.applied), 'phase': self.phase, 'episode': self.episode,
             'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share),
             'success': _rounded(self.success), 'keys': self.keys, 'hand': self.hand,
@@ -63,8 +67,8 @@ class Picture:
             'notice': self.notice, 'time': _rounded(self.time), 'replay': self.replay}
 
 
-def _rounded(value: float | np.ndarray | None) -> Any:
+def _rounded(value: float | np.ndarray | Moments | None) -> Any:
     """0.1 mm and 0.1 mrad are finer than a screen. None for what is not finite, which JSON cannot say."""
     if value is None or not np.isfinite(value).all():
         return None
-    return [round(float(v), 4) for v in value] if isinstance(value, np.ndarray) else round(float(value), 4)
+    return [round(float(v), 4) for v in value] if isinstance(value, np.ndarray | tuple) else round(float(value), 4)

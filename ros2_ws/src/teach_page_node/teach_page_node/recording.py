@@ -1,14 +1,16 @@
 """A recorded session as pictures."""
 
+import math
+
 import numpy as np
 from shared_control import contract
-from shared_control.keys import BUTTONS
+from shared_control.keys import count_buttons
 from shared_control.robot.model import RobotModel, pitch
 from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series, Wrenches
 
 from .history import History
-from .picture import LIT_FOR, Picture
+from .picture import LIT_FOR, Moments, Picture
 
 LONGEST_STILL = 2.0
 """As much is played of a longer gap in the recording (between two runs of a session), s."""
@@ -27,6 +29,7 @@ class Recording:
         if not len(bag.joint_states.q) or not len(bag.ball.position):
             raise BagReadError(f'the bag {bag.path} has no /joint_states, or no /ball: there is nothing to see')
         self._bag = bag
+        self.task = bag.task
         self._model = RobotModel()
         self._received = bag.joint_states.received_ns
         steps = np.minimum(np.diff(self._received, prepend=self._received[0]) * 1e-9, LONGEST_STILL)
@@ -50,6 +53,7 @@ class Recording:
         training = self._bag.training
         return Picture(
             q=q, ball=ball, ball_on_tray=rotation.T @ (ball - origin), pitch=pitch(rotation),
+            tilt=math.acos(min(float(rotation[2, 2]), 1.0)),
             human=_moment(self._bag.human_applied, now_ns),
             agent=_moment(self._bag.agent_applied, now_ns),
             applied=_moment(self._bag.applied, now_ns),
@@ -63,11 +67,12 @@ class Recording:
         """Keys that are lit, and the source of the latest press."""
         last = _before(self._press_ns, now_ns)
         first = np.searchsorted(self._press_ns, now_ns - LIT_FOR * 1e9)
-        lit = [0] * BUTTONS
+        lit = [0] * count_buttons(self.task.keys)
         if last is None:
             return lit, ''
         for press in self._bag.presses[first:last + 1]:
-            lit[press.key] = 1
+            if press.key < len(lit):
+                lit[press.key] = 1
         return lit, self._bag.presses[last].source
 
     def _history(self, now_ns: int) -> History:
@@ -92,8 +97,8 @@ def _latest(series: Series, now_ns: int):  # type: ignore[no-untyped-def]  # a n
     return None if index is None else series.values[index].item()
 
 
-def _moment(wrenches: Wrenches, now_ns: int) -> float | None:
+def _moment(wrenches: Wrenches, now_ns: int) -> Moments | None:
     index = _before(wrenches.received_ns, now_ns)
     if index is None or now_ns - wrenches.received_ns[index] > STALE_AFTER * 1e9:
         return None
-    return float(wrenches.moment[index, 0])
+    return tuple(wrenches.moment[index].tolist())

@@ -18,6 +18,7 @@ class ReplayDesk:
 
     def __init__(self, recording: Recording):
         self._recording = recording
+        self.task = recording.task
         self._position = 0.0
         self._speed = 1.0
         self._plays = False

@@ -6,6 +6,7 @@ import logging
 from typing import Any
 
 from fastapi import WebSocket, WebSocketDisconnect
+from shared_control.keys import count_buttons
 
 from .desk import Desk
 from .history import History
@@ -124,7 +125,7 @@ class Room:
             elif visitor is not self._teacher:
                 return
             elif 'keys' in message:
-                self._desk.press(_buttons(message['keys']))
+                self._desk.press(_buttons(message['keys'], count_buttons(self._desk.task.keys)))
             elif 'let_go' in message:
                 self._desk.let_go()
             else:
@@ -133,7 +134,7 @@ class Room:
             log.warning('dropped a message of a page: %s (%.100r)', error, text)
 
 
-def _buttons(value: Any) -> list[int]:
-    if not (isinstance(value, list) and len(value) == 3 and all(type(v) is int and v in (0, 1) for v in value)):
-        raise ValueError('expected three buttons of 0 or 1')
+def _buttons(value: Any, count: int) -> list[int]:
+    if not (isinstance(value, list) and len(value) == count and all(type(v) is int and v in (0, 1) for v in value)):
+        raise ValueError(f'expected {count} buttons of 0 or 1')
     return value

@@ -58,7 +58,8 @@ class PageServer:
         async def live(websocket: WebSocket) -> None:
             await self._room.receive(websocket)
 
-        ui.run_with(app, root=lambda: build(self._desk.is_replay), title='Teach the robot', tailwind=False, favicon='⚖️',
+        ui.run_with(app, root=lambda: build(self._desk.is_replay, self._desk.task),
+                    title='Teach the robot', tailwind=False, favicon='⚖️',
                     binding_refresh_interval=None, show_welcome_message=False, reconnect_timeout=RECONNECT_WITHIN)
         server = uvicorn.Server(uvicorn.Config(
             Guard(app, self._token), log_level='warning', access_log=False, lifespan='on',

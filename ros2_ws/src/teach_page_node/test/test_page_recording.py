@@ -22,7 +22,7 @@ def test_a_picture_is_what_was_recorded(bag):
     one = lesson(seed=2)
     assert picture.phase == 'teach'
     assert picture.episode == 2
-    assert (picture.human, picture.agent) == (one.m_y_human[25], pytest.approx(one.m_y_agent[25]))
+    assert (picture.human, picture.agent) == ((one.m_y_human[25],), pytest.approx((one.m_y_agent[25],)))
     assert -picture.ball_on_tray[0] == pytest.approx(one.position_error[25], abs=1e-3)
     assert picture.history.returns == [-100.0]
     assert picture.message()['q'] == [round(angle, 4) for angle in picture.q.tolist()]

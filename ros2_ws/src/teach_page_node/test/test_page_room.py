@@ -1,6 +1,7 @@
 """One teaches, the others watch; what pages say is checked."""
 
 import pytest
+from shared_control.tasks.balance import BALANCE
 from starlette.applications import Starlette
 from starlette.routing import WebSocketRoute
 from starlette.testclient import TestClient
@@ -12,6 +13,7 @@ class Notebook:
     """A desk that notes what it is told."""
 
     is_replay = is_over = False
+    task = BALANCE
 
     def __init__(self):
         self.notes = []

@@ -83,7 +83,8 @@ class TeleopKeyNode:
             self.node.get_logger().info(f'no terminal ({reason}): {serves}')
             return None
         keys = self._task.keys if self._device == KEYS_DEVICE else {}
-        return Panel(self.node, terminal, self._rate, self._frame_rate, self._moment_limit, self._characters, keys)
+        return Panel(self.node, terminal, self._rate, self._frame_rate, self._moment_limit, self._characters, keys,
+                     self._task)
 
     def run(self, stop: Stop) -> None:
         """Turn what the person does into M_h until told to stop."""

@@ -6,7 +6,8 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import BUTTONS, Key, KeyMap
+from shared_control.keys import LEFT_AND_RIGHT, Key, KeyMap, count_buttons
+from shared_control.tasks.task import Task
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.lesson import Lesson
@@ -44,24 +45,25 @@ class Panel:
         frame_rate: of the screen, Hz.
         moment_limit: bound of |M_yh|, N m.
         characters: ``auto``, ``unicode`` or ``ascii``.
+        task: what is taught.
         keys: what the keys move; none when the person holds another device: then only q, p and the screen are here.
     """
 
     def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, moment_limit: float,
-                 characters: str, keys: KeyMap):
+                 characters: str, keys: KeyMap, task: Task):
         self.terminal = terminal
         known = {*keys, Key.SPACE} if keys else set()
         self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
         self._held = HeldKeys(1.0 / rate)
         self._sends_keys = bool(keys)
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._joy = Joy(buttons=[0] * max(BUTTONS, *(key + 1 for key in (*keys, Key.SPACE))))
+        self._joy = Joy(buttons=[0] * count_buttons(keys or LEFT_AND_RIGHT))
         self._joy.header.frame_id = SOURCE
         self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
         self._ticks = 0
         self.requests = Requests(node, self.tell)
-        self._observer = Observer(node)
-        self._scene = Scene(moment_limit=moment_limit)
+        self._observer = Observer(node, task)
+        self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit)
         self._restarts = 0
         self._paused_stamp_ns = 0
         self._frame_period = 1.0 / frame_rate
@@ -118,7 +120,7 @@ class Panel:
         self._observer.update(scene)
         self._notice_resumption()
         scene.phase, scene.episode = lesson.phase, lesson.episode
-        scene.human = float(sources.moment[0])
+        scene.human = tuple(sources.moment.tolist())
         scene.hand = 'you' if sources.last_pressed in ('', SOURCE) else sources.last_pressed
         scene.paused = self.requests.paused
         if now > self._message_until:

@@ -1,10 +1,14 @@
-"""Tray and ball, seen from the side: base +x is on the left, because the left key is to move the ball there."""
+"""Tray and ball, from the side: base +x is on the left, because the left key is to move the ball there.
+
+With two axes from above (:mod:`teleop_key_node.from_above`).
+"""
 
 import math
 
 import numpy as np
 from shared_control_ros.watching.scene import Scene
 
+from . import from_above
 from .canvas import to_lines
 
 STEEPER = 3
@@ -15,12 +19,18 @@ _MAX_COLUMNS, _MAX_ROWS = 120, 30
 
 def has_fallen(scene: Scene) -> bool:
     """Whether the ball is no longer on the tray."""
-    return (scene.ball_along is not None and scene.ball_height is not None
-            and (scene.ball_height < 0.0 or abs(scene.ball_along) > scene.tray.half_length + scene.tray.ball.radius))
+    if scene.ball_along is None or scene.ball_height is None:
+        return False
+    tray = scene.tray
+    across = scene.ball_on_tray[1] if scene.from_above and scene.ball_on_tray is not None else 0.0
+    return (scene.ball_height < 0.0 or abs(scene.ball_along) > tray.half_length + tray.ball.radius
+            or abs(across) > tray.half_width + tray.ball.radius)
 
 
 def draw(scene: Scene, width: int, height: int, unicode: bool) -> list[str]:
     """The picture in ``height`` lines of ``width`` characters, centred."""
+    if scene.from_above:
+        return from_above.draw(scene, width, height, unicode)
     columns, rows = min(width, _MAX_COLUMNS), min(height, _MAX_ROWS)
     above = (height - rows) // 2
     lines = [''] * rows if scene.pitch is None else to_lines(_dots(scene, scene.pitch, 2 * columns, 4 * rows), unicode)

@@ -2,6 +2,7 @@
 
 import math
 
+from shared_control.wrench import AXIS_NAMES
 from shared_control_ros.watching.scene import Scene
 
 from .picture import STEEPER, draw, has_fallen
@@ -29,13 +30,11 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
     above = [(9, _title(scene, width)), (1, ''), (8, _headline(scene, width)), (0, '')]
     below = [
         (6, _tilt(scene, width)), (2, ''),
-        (7, _bar(scene.hand, 'M_yh', scene.human, scene, width, unicode)),
-        (4, _bar('robot', 'M_yai', scene.agent, scene, width, unicode)),
-        (5, _bar('sum', 'M_y', scene.applied, scene, width, unicode)),
+        *_moments(scene, width, unicode),
         (2, ''),
         (3, _share(scene, width, unicode)),
         (3, _returns(scene, width, unicode)),
-        (7, _message(scene)), (8, _help(width, unicode))]
+        (7, _message(scene)), (8, _help(scene, width, unicode))]
     if not _message(scene):
         below[-2] = (1, '')
     for importance in range(9):
@@ -56,7 +55,8 @@ def _fitting(width: int, *texts: str) -> str:
 def _title(scene: Scene, width: int) -> str:
     episode = '' if scene.episode is None else f'   episode {scene.episode}'
     left = '' if scene.time_left is None else f'   time left {scene.time_left:4.1f} s'
-    return _fitting(width, ' Teach the robot to balance the ball' + episode + left, (episode + left)[2:])
+    what = f': {scene.task.name}' if scene.from_above else ' to balance the ball'
+    return _fitting(width, f' Teach the robot{what}' + episode + left, (episode + left)[2:])
 
 
 def _headline(scene: Scene, width: int) -> str:
@@ -72,6 +72,8 @@ def _headline(scene: Scene, width: int) -> str:
         word, text = 'FREE', 'No robot is being taught. Your keys tilt the tray: try them.'
     else:
         word, text = scene.phase.upper(), _PHASES.get(scene.phase, '')
+        if scene.phase == 'teach' and scene.from_above:
+            text = f'{scene.task.instruction.rstrip(".")}: the robot learns from your keys.'
     return _fitting(width, f' [ {word} ]  {text}', f' [ {word} ]  {text.partition(":")[0].partition(". ")[0]}')
 
 
@@ -83,6 +85,8 @@ def _message(scene: Scene) -> str:
 def _tilt(scene: Scene, width: int) -> str:
     if scene.pitch is None:
         return ''
+    if scene.from_above:
+        return _off_the_goal(scene, width)
     degrees = math.degrees(scene.pitch)
     side = '' if abs(degrees) < 0.05 else 'left' if degrees > 0 else 'right'
     tilt = f' tilt {abs(degrees):.1f} deg'
@@ -96,6 +100,30 @@ def _tilt(scene: Scene, width: int) -> str:
         where = 'ball in the middle' if abs(cm) < 0.5 else (
             f'ball {abs(cm):.1f} cm {"left" if cm > 0 else "right"} of the middle')
     return _fitting(width, f'{long}   {where}', f'{tilt} {side}   {where.partition(" of ")[0]}')
+
+
+def _off_the_goal(scene: Scene, width: int) -> str:
+    tilt = '' if scene.tilt is None else f' tilt {math.degrees(scene.tilt):.1f} deg'
+    if has_fallen(scene):
+        return f'{tilt}   THE BALL HAS FALLEN'
+    if scene.ball_on_tray is None:
+        return tilt
+    off = 100.0 * math.dist(scene.ball_on_tray[:2].tolist(), scene.tray.goal)
+    where = 'ball at the goal' if off < 100.0 * scene.tray.goal_radius else f'ball {off:.1f} cm from the goal'
+    return _fitting(width, f'{tilt}   {where}   (seen from above)', f'{tilt}   {where}')
+
+
+def _moments(scene: Scene, width: int, unicode: bool) -> list[tuple[int, str]]:
+    """Lines for the moments of human, robot and both, with their importance."""
+    sources = ((7, scene.hand, 'M_yh', scene.human), (4, 'robot', 'M_yai', scene.agent),
+               (5, 'sum', 'M_y', scene.applied))
+    if not scene.from_above:
+        return [(importance, _bar(who, symbol, None if moment is None else moment[0], scene, width, unicode))
+                for importance, who, symbol, moment in sources]
+    names = [f'M_{AXIS_NAMES[row][-1]}' for row in scene.task.axes]
+    return [(importance, f' {who[:8]:8} ' + '   '.join(
+        f'{name} {"   --" if moment is None else format(moment[axis] + 0.0, "+5.1f")}'
+        for axis, name in enumerate(names)) + ' N m') for importance, who, _, moment in sources]
 
 
 def _bar(who: str, symbol: str, moment: float | None, scene: Scene, width: int, unicode: bool) -> str:
@@ -137,8 +165,13 @@ def _returns(scene: Scene, width: int, unicode: bool) -> str:
     return text
 
 
-def _help(width: int, unicode: bool) -> str:
+def _help(scene: Scene, width: int, unicode: bool) -> str:
     left, right = _ARROWS[unicode]
+    if scene.from_above:
+        arrows = '← ↑ ↓ →' if unicode else 'arrows'
+        return _fitting(
+            width, f' {arrows} or a w s d: tip the tray   space: let go   q: it has learned   p: pause   ^C: quit',
+            f' {arrows} tip   space let go   q learned   p pause   ^C quit', f' {arrows} space q p ^C')
     return _fitting(
         width,
         f' {left} a: left   d {right}: right   space: let go   q: it has learned   p: pause   Ctrl-C: quit',

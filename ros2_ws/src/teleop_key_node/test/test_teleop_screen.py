@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from shared_control.tasks.detour import Detour
+from shared_control.tasks.plate import Plate
 from shared_control_ros.watching.scene import Scene
 from teleop_key_node.picture import draw
 from teleop_key_node.screen import render
 
 SCENE = Scene(
-    pitch=0.04, ball_along=0.10, ball_height=0.021, human=5.0, agent=-2.0, applied=3.0, human_share=0.25,
+    pitch=0.04, ball_along=0.10, ball_height=0.021, human=(5.0,), agent=(-2.0,), applied=(3.0,), human_share=0.25,
     phase='teach', episode=3, time_left=9.4, returns=[-5000.0, -200.0, 40.0], success=0.95)
 
 
@@ -58,7 +61,7 @@ def test_bars_point_to_where_the_ball_is_pushed():
 
 
 def test_bars_keep_to_their_place_beyond_the_scale():
-    lines = render(replace(SCENE, applied=-105.0), 80, 24)
+    lines = render(replace(SCENE, applied=(-105.0,)), 80, 24)
     assert '-105.0 N m' in line_with(lines, 'M_y ')
     assert len(line_with(lines, 'M_y ')) == 80
 
@@ -105,3 +108,54 @@ def test_a_small_window_keeps_what_matters():
     assert all(part in text for part in ('[ TEACH ]', 'M_yh', 'M_yai', 'tilt', 'space', 'episode 3'))
     text = '\n'.join(render(SCENE, 40, 10))
     assert all(part in text for part in ('[ TEACH ]', 'M_yh', 'space'))
+
+
+FROM_ABOVE = replace(
+    SCENE, task=Plate(), tilt=0.03, ball_on_tray=np.array([0.10, -0.05, 0.021]), human=(0.0, 0.0), agent=(-3.0, 8.0),
+    applied=(2.0, 3.0))
+
+
+def dots_of(scene: Scene) -> set[tuple[int, int]]:
+    """Rows and columns of the picture's characters that are not blank."""
+    return {(row, column) for row, line in enumerate(draw(scene, 80, 16, True)) for column, cell in enumerate(line)
+            if cell != ' '}
+
+
+@pytest.mark.parametrize(('x', 'y', 'is_left', 'is_up'), [
+    (0.1, -0.1, True, True), (-0.1, -0.1, False, True), (0.1, 0.1, True, False)])
+def test_from_above_plus_x_is_left_and_minus_y_at_the_top(x, y, is_left, is_up):
+    empty = dots_of(replace(FROM_ABOVE, ball_on_tray=None))
+    ball = dots_of(replace(FROM_ABOVE, ball_on_tray=np.array([x, y, 0.021]))) - empty
+    assert ball
+    assert all((column < 40) == is_left and (row < 8) == is_up for row, column in ball)
+
+
+def test_the_bar_is_drawn_from_the_wall_on_the_right():
+    bar = dots_of(replace(FROM_ABOVE, task=Detour(), ball_on_tray=None)) - dots_of(
+        replace(FROM_ABOVE, ball_on_tray=None))
+    middle = {column for row, column in bar if row in (7, 8)}
+    assert len(middle) > 10 and max(middle) > 45 and min(middle) > 33
+
+
+@pytest.mark.parametrize(('moment', 'is_left', 'is_up'), [((10.0, 10.0), True, True), ((-10.0, -10.0), False, False)])
+def test_an_arrow_points_to_where_the_moment_rolls_the_ball(moment, is_left, is_up):
+    arrow = dots_of(replace(FROM_ABOVE, human=moment)) - dots_of(replace(FROM_ABOVE, human=(0.0, 0.0)))
+    assert len(arrow) > 2
+    assert all((column <= 10) == is_left and (row <= 7) == is_up for row, column in arrow)
+
+
+@pytest.mark.parametrize(('changes', 'said'), [
+    ({}, 'M_x  -3.0   M_y  +8.0 N m'), ({'agent': None}, 'M_x    --   M_y    -- N m'),
+    ({}, 'ball 11.2 cm from the goal'),
+    ({'ball_on_tray': np.array([0.01, 0.0, 0.021]), 'ball_along': 0.01}, 'ball at the goal'),
+    ({'ball_on_tray': np.array([0.0, 0.2, 0.021]), 'ball_along': 0.0}, 'THE BALL HAS FALLEN'),
+    ({'task': Detour()}, 'Bring the ball round the bar to the goal'), ({}, 'tilt 1.7 deg'), ({}, 'a w s d'),
+    ({}, 'Teach the robot: plate')])
+def test_what_is_said_with_two_axes(changes, said):
+    assert said in '\n'.join(render(replace(FROM_ABOVE, **changes), 100, 24))
+
+
+@pytest.mark.parametrize(('width', 'height'), [(80, 24), (60, 16), (40, 10), (20, 5), (1, 1), (200, 60), (79, 200)])
+def test_any_window_is_filled_from_above(width, height):
+    lines = render(FROM_ABOVE, width, height, False)
+    assert len(lines) <= height and all(len(line) == width for line in lines) and '\n'.join(lines).isascii()

@@ -13,7 +13,7 @@ from shared_control_learning.evaluation.randomized import run_randomized
 from shared_control_learning.evaluation.result import ProtocolResult
 from shared_control_learning.evaluation.trajectory import run_trajectory
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
-from shared_control_learning.presets import preset
+from shared_control_learning.presets import preset_for
 from shared_control_learning.training import train
 
 from ..session.final_test import load_test
@@ -48,8 +48,9 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     """Train with a simulated tutor or alone, then test."""
     path, started = folder.run(job), time.monotonic()
     training = train(
-        preset(job.condition.preset), job.participant.tutor if job.condition.taught else None, job.participant.seed,
-        job.condition.episodes, until_skilled=True, folder=path, evaluate_every=job.condition.evaluate_every)
+        preset_for(job.condition.task, job.condition.preset),
+        job.participant.tutor if job.condition.taught else None, job.participant.seed, job.condition.episodes,
+        until_skilled=True, folder=path, evaluate_every=job.condition.evaluate_every)
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
         episodes=table(path / TABLE_NAME), tests=run_tests(plan, job, path / POLICY_NAME),

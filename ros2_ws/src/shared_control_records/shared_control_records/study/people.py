@@ -37,7 +37,7 @@ def lead_through(folder: StudyFolder, plan: Plan, participant: Participant, run_
     if not progress.consented and not _consent(people, progress):
         return False
     if not progress.practised:
-        practice = ['--preset', order[0].preset, '--episodes', str(people.practice_episodes), '--test-episodes', '0']
+        practice = [*_learning(order[0]), '--episodes', str(people.practice_episodes), '--test-episodes', '0']
         if people.practice_episodes and not _run(
                 folder.person(participant) / 'practice', practice, participant, people, run_session,
                 'Practice: get to know the keys. This part does not count.'):
@@ -67,8 +67,12 @@ def _consent(people: People, progress: Progress) -> bool:
     return True
 
 
+def _learning(condition: Condition) -> list[str]:
+    return ['--preset', condition.preset, *(['--task', condition.task] if condition.task else [])]
+
+
 def _teaching(condition: Condition, people: People) -> list[str]:
-    return ['--preset', condition.preset, '--minutes', str(people.minutes)]
+    return [*_learning(condition), '--minutes', str(people.minutes)]
 
 
 def _run(path: Path, arguments: list[str], participant: Participant, people: People, run_session: RunSession,

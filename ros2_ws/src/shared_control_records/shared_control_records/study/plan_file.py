@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, get_args
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, field_validator, model_validator
 from shared_control.teaching.tutors import tutor_named
-from shared_control_learning.presets import preset
+from shared_control_learning.presets import preset, preset_for
 from shared_control_learning.wrong_content import shortened
 
 Test = Literal['randomized', 'perturbation', 'trajectory']
@@ -19,6 +19,10 @@ SESSION_OPTIONS = ('--params-file', '--tutor', '--page', '--no-screen')
 
 def _known_preset(name: str) -> str:
     return preset(name).name
+
+
+def _known_task(name: str) -> str:
+    return preset_for(name).task.name if name else name
 
 
 def _known_tutor(name: str) -> str:
@@ -68,6 +72,8 @@ class Learning(Section):
 
     preset: Annotated[Name, AfterValidator(_known_preset)]
     """An entry point of ``shared_control.learners``; the condition's name when the plan does not say."""
+    task: Annotated[Name, AfterValidator(_known_task)] = ''
+    """An entry point of ``shared_control.tasks``; what the preset was made for when the plan does not say."""
     episodes: Episodes = 20
     """Training ends here for who is not skilled by then."""
     taught: bool = True

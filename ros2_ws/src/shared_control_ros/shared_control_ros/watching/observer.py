@@ -9,13 +9,15 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from shared_control.robot.model import RobotModel, pitch
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 
 from .. import contract
 from ..fast_loop import Polled
 from ..joints import joint_positions
 from ..stamps import to_ns
 from ..wrenches import moment_of
-from .scene import Scene
+from .scene import Moments, Scene
 
 SILENT_AFTER = 0.5
 """A topic is silent when it brings nothing new for this long, s of the wall clock."""
@@ -27,13 +29,13 @@ _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 class Observer:
     """Keeps the newest of each topic, at the price of the frames that are drawn, not of the messages that pass."""
 
-    def __init__(self, node: Node):
+    def __init__(self, node: Node, task: Task = BALANCE):
         self._log = node.get_logger()
         self._model = RobotModel()
         self._joint_states = Polled(node, contract.JOINT_STATES_THROTTLE, qos_profile=_NEWEST)
         self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
-        self._agent = Moment(node, contract.AGENT_WRENCH)
-        self._applied = Moment(node, contract.APPLIED_WRENCH)
+        self._agent = Moment(node, contract.AGENT_WRENCH, task)
+        self._applied = Moment(node, contract.APPLIED_WRENCH, task)
         latest = contract.qos_latched(1)
         self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
         self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
@@ -83,6 +85,7 @@ class Observer:
         scene.q = q
         self._tray = self._model.tray_pose(q)
         scene.pitch = pitch(self._tray[1])
+        scene.tilt = math.acos(min(float(self._tray[1][2, 2]), 1.0))
 
     def _read_ball(self, ball: Odometry, scene: Scene) -> None:
         assert self._tray is not None
@@ -106,20 +109,21 @@ class Observer:
 
 
 class Moment:
-    """The moment of a wrench topic along the first axis of the task; None when it is silent."""
+    """The moment of a wrench topic along the axes of a task; None when it is silent."""
 
-    def __init__(self, node: Node, topic: contract.Topic):
+    def __init__(self, node: Node, topic: contract.Topic, task: Task = BALANCE):
         self._topic = Polled(node, topic, qos_profile=_NEWEST)
-        self._moment: float | None = None
+        self._axes = task.axes
+        self._moment: Moments | None = None
         self._heard_at = -math.inf
 
-    def update(self, now: float) -> float | None:
-        """M_y, N m, at ``now`` of the monotonic clock."""
+    def update(self, now: float) -> Moments | None:
+        """(k,), N m, at ``now`` of the monotonic clock."""
         wrench = self._topic.take()
         if wrench is not None:
             self._heard_at = now
             try:
-                self._moment = float(moment_of(wrench)[0])
+                self._moment = tuple(moment_of(wrench, self._axes).tolist())
             except ValueError:
                 self._moment = None
         return self._moment if now - self._heard_at <= SILENT_AFTER else None

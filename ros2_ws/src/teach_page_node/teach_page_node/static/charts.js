@@ -5,7 +5,7 @@ const DRAW_EVERY_MS = 200;
 
 const chart = (name) => window.getElement(window.teachPage[name]).chart;
 
-let samples = []; // [time, human, agent, applied]
+let samples = []; // [time, ...human, ...agent, ...applied]
 let drawnAt = 0;
 let history = null;
 
@@ -13,14 +13,15 @@ export function showMoments(picture) {
   const last = samples.length ? samples[samples.length - 1][0] : -Infinity;
   if (picture.time < last || picture.time > last + window.teachPage.chart_seconds) samples = []; // another run, or another place in a replay
   if (picture.time > last + SAMPLE_EVERY || !samples.length) {
-    samples.push([picture.time, picture.human, picture.agent, picture.applied]);
+    const none = window.teachPage.axes.map(() => null);
+    samples.push([picture.time, ...(picture.human ?? none), ...(picture.agent ?? none), ...(picture.applied ?? none)]);
     while (samples[0][0] < picture.time - window.teachPage.chart_seconds) samples.shift();
   }
   const now = performance.now();
   if (now - drawnAt < DRAW_EVERY_MS) return;
   drawnAt = now;
   chart("moments")?.setOption({
-    series: [1, 2, 3].map((column) => ({ data: samples.map((s) => [s[0] - picture.time, s[column]]) })),
+    series: samples[0].slice(1).map((_, i) => i + 1).map((column) => ({ data: samples.map((s) => [s[0] - picture.time, s[column]]) })),
   });
   if (history !== null) drawHistory();
 }

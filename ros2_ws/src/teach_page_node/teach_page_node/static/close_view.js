@@ -1,4 +1,5 @@
-// The tray from the front, and the moments as arrows. Base +x, to which a positive moment rolls the ball, is on the left.
+// The tray and the moments as arrows, from the front or, with two axes, from above. Base +x, to which a positive moment
+// about y rolls the ball, is on the left; -y, to which a positive moment about x rolls it, at the top.
 
 import { part, setText } from "./parts.js";
 
@@ -6,9 +7,40 @@ const EXAGGERATION = 3;
 const MM = 1000; // 1 mm is a unit of the drawing
 const ARROWS = 200; // units of the drawing for the task's largest moment
 const HEAD = 16;
+// From the front the arrows stand below each other.
+const ROWS = window.teachPage.axes.length > 1 ? { human: 0, agent: 0, applied: 0 } : { human: 55, agent: 72, applied: 91 };
 
 export function showCloseView(picture) {
-  const { on_tray, pitch } = picture;
+  const isFromAbove = window.teachPage.axes.length > 1;
+  if (isFromAbove) showFromAbove(picture);
+  else showFromFront(picture);
+  const [human, agent, applied] = [picture.human, picture.agent, picture.applied].map(inPicture);
+  const sum = [human[0] + agent[0], human[1] + agent[1]];
+  arrow("human", [0, 0], human);
+  arrow("agent", human, sum);
+  arrow("applied", [0, 0], applied);
+}
+
+// A moment as it points in the drawing: to where it rolls the ball, N m.
+function inPicture(moment) {
+  const to = [0, 0];
+  moment?.forEach((value, i) => (to[window.teachPage.axes[i] === 4 ? 0 : 1] -= value));
+  return to;
+}
+
+function showFromAbove({ on_tray, tilt }) {
+  const { half_length, half_width, goal } = window.teachPage;
+  const degrees = ((tilt ?? 0) * 180) / Math.PI;
+  part("close-ball").style.display = on_tray === null ? "none" : "";
+  if (on_tray === null) return setText("tilt-text", "");
+  const [x, y] = [[on_tray[0], half_length], [on_tray[1], half_width]].map(([at, half]) => Math.max(-half - 0.02, Math.min(half + 0.02, at)));
+  part("close-ball").setAttribute("cx", (-x * MM).toFixed(1));
+  part("close-ball").setAttribute("cy", (y * MM).toFixed(1));
+  const off = 100 * Math.hypot(on_tray[0] - goal[0], on_tray[1] - goal[1]);
+  setText("tilt-text", `from above · tilt ${degrees.toFixed(1)}° · ${off.toFixed(1)} cm to go`);
+}
+
+function showFromFront({ on_tray, pitch }) {
   const degrees = ((pitch ?? 0) * 180) / Math.PI;
   part("tilt").setAttribute("transform", `rotate(${(-EXAGGERATION * degrees).toFixed(2)})`);
   const side = degrees > 0 ? "to the left" : "to the right";
@@ -25,16 +57,15 @@ export function showCloseView(picture) {
     part("close-shadow").setAttribute("cx", x);
     if (Math.abs(on_tray[0]) > half_length) part("close-shadow").style.display = "none";
   }
-  const human = picture.human ?? 0;
-  arrow("human", 0, human);
-  arrow("agent", human, human + (picture.agent ?? 0));
-  arrow("applied", 0, picture.applied ?? 0);
 }
 
 function arrow(name, from, to) {
   const unitsANm = ARROWS / window.teachPage.moment_limit;
-  const [tail, tip] = [-from * unitsANm, -to * unitsANm];
-  const neck = tip - Math.sign(tip - tail) * Math.min(HEAD, Math.abs(tip - tail));
-  part(`arrow-${name}`).setAttribute("d", Math.abs(tip - tail) < 1 ? "" :
-    `M${tail} -4H${neck}V-9L${tip} 0L${neck} 9V4H${tail}z`);
+  const [x, y] = [from[0] * unitsANm, from[1] * unitsANm];
+  const [across, down] = [(to[0] - from[0]) * unitsANm, (to[1] - from[1]) * unitsANm];
+  const length = Math.hypot(across, down);
+  const neck = length - Math.min(HEAD, length);
+  part(`arrow-${name}`).setAttribute("d", length < 1 ? "" : `M0 -4H${neck}V-9L${length} 0L${neck} 9V4H0z`);
+  const turn = `translate(${x} ${y}) rotate(${(Math.atan2(down, across) * 180) / Math.PI})`;
+  part(`arrow-${name}`).setAttribute("transform", `translate(0 ${ROWS[name]}) ${turn}`);
 }

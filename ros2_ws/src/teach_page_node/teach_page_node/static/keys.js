@@ -1,4 +1,4 @@
-// The three keys: of the keyboard, and those on the page for mouse and finger.
+// The keys of the task: of the keyboard, and those on the page for mouse and finger.
 //
 // The state goes out at every change and, as a sign of life, every 100 ms. When the window loses the focus, is hidden or
 // is left, the page says so and falls silent: either makes the human's moment zero.
@@ -6,18 +6,21 @@
 import { part } from "./parts.js";
 
 const REPEAT_MS = 100;
-const NAMES = ["left", "right", "space"];
+const NAMES = window.teachPage.keys; // in the order of the buttons
 // By what a key means (on a French keyboard A is where others have Q), and by where it is when it types no Latin letter.
-const MEANINGS = { ArrowLeft: 0, a: 0, ArrowRight: 1, d: 1, " ": 2 };
-const PLACES = { KeyA: 0, KeyD: 1 };
+const MEANINGS = { ArrowLeft: "left", a: "left", ArrowRight: "right", d: "right", " ": "space", ArrowUp: "up", w: "up",
+  ArrowDown: "down", s: "down" };
+const PLACES = { KeyA: "left", KeyD: "right", KeyW: "up", KeyS: "down" };
 
 function keyOf(event) {
   const typed = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-  return MEANINGS[typed] ?? (/^[\x20-\x7e]$/.test(typed) ? undefined : PLACES[event.code]);
+  const name = MEANINGS[typed] ?? (/^[\x20-\x7e]$/.test(typed) ? undefined : PLACES[event.code]);
+  const i = NAMES.indexOf(name);
+  return i < 0 ? undefined : i;
 }
 
 export function listenToKeys(send) {
-  const held = [new Set(), new Set(), new Set()]; // by what: a key's code, or a pointer
+  const held = NAMES.map(() => new Set()); // by what: a key's code, or a pointer
   let isActive = false;
   let hasFocus = document.hasFocus() && !document.hidden;
 

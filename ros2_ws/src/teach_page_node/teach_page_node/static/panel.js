@@ -27,11 +27,11 @@ export function showPicture(picture, isReplay) {
   const left = isEpisode && picture.time_left !== null ? Math.max(picture.time_left, 0) : null;
   setText("time-left", left === null ? "" : `${left.toFixed(0)} s left`);
   part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / window.teachPage.episode_seconds[phase])}%`;
-  setText("success", picture.success === null ? "not yet" : `${Math.round(100 * picture.success)} % kept in the middle`);
+  setText("success", picture.success === null ? "not yet" : `${Math.round(100 * picture.success)} % ${window.teachPage.axes.length > 1 ? "at the goal" : "kept in the middle"}`);
   setText("human-name", picture.hand === "tutor" ? "simulated tutor" : role.teaches && !isReplay ? "you" : "human");
   for (const name of ["human", "agent", "applied"]) setText(`${name}-moment`, moment(picture[name]));
   if (isReplay) return;
-  for (const [i, name] of ["left", "right", "space"].entries()) {
+  for (const [i, name] of window.teachPage.keys.entries()) {
     document.querySelector(`[data-key="${name}"]`).classList.toggle("lit", picture.keys[i] === 1);
   }
   setText("pause", picture.paused ? "Go on" : "Pause");
@@ -47,7 +47,14 @@ function trouble(picture, isReplay) {
   return null;
 }
 
-const moment = (value) => (value === null ? "–" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value).toFixed(1)}`);
+const signed = (value) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value).toFixed(1)}`;
+const SIGNS = { 3: ["↑", "↓"], 4: ["←", "→"] }; // where a moment about base x (3) or y (4) rolls the ball
+
+function moment(values) {
+  if (values === null) return "–";
+  if (values.length === 1) return signed(values[0]);
+  return values.map((value, i) => `${value === 0 ? "" : SIGNS[window.teachPage.axes[i]][value > 0 ? 0 : 1]}${Math.abs(value).toFixed(1)}`).join(" ");
+}
 
 export function showRole(newRole, isReplay) {
   role = newRole;

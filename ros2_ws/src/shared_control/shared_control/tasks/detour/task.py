@@ -31,7 +31,7 @@ class Detour(Plate):
     """
 
     name: ClassVar[str] = 'detour'
-    instruction: ClassVar[str] = 'Bring the ball round the bar to the goal behind it and keep it there.'
+    instruction: ClassVar[str] = 'Bring the ball round the bar to the goal and keep it there.'
     preset: ClassVar[str] = 'coached_network'
     scene: ClassVar[Scene] = DETOUR_SCENE
     start: ClassVar[tuple[tuple[float, float], tuple[float, float]]] = ((-0.12, 0.0), (-0.12, -0.05))
