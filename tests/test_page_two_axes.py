@@ -1,0 +1,118 @@
+"""The teaching page of a task with two axes in a real browser, with a session on the live graph behind it."""
+
+import re
+import signal
+import subprocess
+import sys
+
+import pytest
+from selenium.webdriver.common.keys import Keys
+from shared_control_ros import contract
+from shared_control_ros.processes import leave_with_the_parent
+from shared_control_testing.page import Browser
+
+pytestmark = pytest.mark.alone
+
+ROLLED = 30
+"""Pixels that no ball at rest moves."""
+
+
+@pytest.fixture(scope='class')
+def address(domain_id, tmp_path_factory):
+    """``shared-control session --task detour --tutor page``, practising."""
+    folder = tmp_path_factory.mktemp('session') / 'session'
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'shared_control', 'session', '--task', 'detour', '--tutor', 'page', '--page',
+         '127.0.0.1:0', '--test-episodes', '0', '--output', str(folder)],
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        preexec_fn=leave_with_the_parent)
+    said = ''
+    while not (found := re.search(r'Teach here: (http://127\S+)', said)):
+        line = process.stdout.readline()
+        assert line, f'the session ended: {said}'
+        said += line
+    yield found[1]
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=120)
+
+
+@pytest.fixture(scope='class')
+def browser(address):
+    browser = Browser()
+    browser.open(address)
+    yield browser
+    browser.close()
+
+
+def ball(browser):
+    """Where the ball is drawn, pixels."""
+    box = browser.script('const b = document.querySelector("[data-part=close-ball]").getBoundingClientRect();'
+                         'return [b.x, b.y]')
+    return tuple(box)
+
+
+def shown_moment(browser):
+    """The human's moment as the page has it at one time: the text, and the angle of the arrow, deg."""
+    text, turn = browser.script("""
+        const part = (name) => document.querySelector(`[data-part=${name}]`);
+        return [part("human-moment").textContent, part("arrow-human").getAttribute("transform")];""")
+    return text, round(float(re.search(r'rotate\((\S+)\)', turn)[1]), 1)
+
+
+class TestTheDetourOnThePage:
+    """In this order, in one session that practises."""
+
+    def test_four_keys_roll_the_ball_to_where_they_point(self, browser, observer):
+        browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
+        wrenches = observer.listen(contract.HUMAN_WRENCH)
+
+        def holds(m_x, m_y):
+            observer.spin(lambda: wrenches.clear() or observer.spin_for(0.03) or (
+                wrenches and (wrenches[-1].wrench.torque.x, wrenches[-1].wrench.torque.y) == (m_x, m_y)),
+                what=f'M_h = {m_x}, {m_y}')
+
+        # After it was rolled to one side there is room to the other.
+        for key, held, shown, angle, axis in (
+                (Keys.ARROW_DOWN, (-5.0, 0.0), '↓5.0 0.0', 90.0, None),
+                (Keys.ARROW_UP, (5.0, 0.0), '↑5.0 0.0', -90.0, 1),
+                (Keys.ARROW_LEFT, (0.0, 5.0), '0.0 ←5.0', 180.0, None), ('d', (0.0, -5.0), '0.0 →5.0', 0.0, 0)):
+            browser.type(Keys.SPACE)
+            holds(0.0, 0.0)
+            before = ball(browser)
+            browser.type(key)
+            holds(*held)
+            browser.wait(lambda shown=shown, angle=angle: shown_moment(browser) == (shown, angle), f'{shown}, {angle}')
+            if axis is None:
+                observer.spin_for(1.5)
+            else:
+                sign = 1 if axis == 0 else -1
+                browser.wait(lambda before=before, axis=axis, sign=sign: sign * (
+                                 ball(browser)[axis] - before[axis]) > ROLLED,
+                             f'the ball rolls: {shown}')
+        browser.type(Keys.SPACE)
+
+    def test_bar_goal_and_both_views_are_there(self, browser):
+        parts = browser.script('''
+            const box = (selector) => { const b = document.querySelector(selector).getBoundingClientRect();
+                return [b.left, b.top, b.right, b.bottom]; };
+            return [box("svg .plate"), box("svg .obstacle"), box("svg .goal"), box("[data-part=scene]")];''')
+        plate, bar, goal, scene = parts
+        for inner in (bar, goal):
+            assert plate[0] - 2 <= inner[0] and inner[2] <= plate[2] + 2
+            assert plate[1] <= inner[1] and inner[3] <= plate[3]
+        assert goal[1] > bar[3], 'the goal lies beyond the bar, nearer to who looks'
+        assert bar[2] == pytest.approx(plate[2], abs=6) and bar[0] > plate[0] + 20, 'the gap is on the left'
+        assert scene[2] <= plate[0], 'the plate from above stands beside the 3D view'
+
+    @pytest.mark.parametrize(('width', 'height'), [(1920, 1080), (1280, 720), (844, 390)])
+    def test_every_size_shows_plate_and_keys_whole(self, browser, width, height):
+        outer = browser.script('return [outerWidth - innerWidth, outerHeight - innerHeight]')
+        browser.driver.set_window_size(width + outer[0], height + outer[1])
+        inner = browser.script('return [innerWidth, innerHeight]')
+        for selector in ('svg .plate', '[data-key=up]', '[data-key=down]', '[data-key=left]', '[data-key=right]',
+                         '[data-key=space]', '.phase'):
+            left, top, right, bottom = browser.script(
+                f'const b = document.querySelector("{selector}").getBoundingClientRect();'
+                'return [b.left, b.top, b.right, b.bottom]')
+            assert right - left > 20 and bottom - top > 14, selector
+            assert left >= 0 and top >= 0 and right <= inner[0] + 1 and bottom <= inner[1] + 1, selector
