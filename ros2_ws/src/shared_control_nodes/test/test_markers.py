@@ -27,16 +27,23 @@ def test_the_ball_has_its_diameter():
 
 @pytest.mark.parametrize('m_y', [5.0, -2.5, 0.0])
 def test_a_moment_points_to_where_the_ball_rolls(m_y):
-    bar, text = moment_markers('human', m_y, TRAY)
+    bar, text = moment_markers('human', np.array([m_y]), (4,), TRAY)
     assert bar.points[1].x - bar.points[0].x == pytest.approx(METRES_PER_NEWTON_METRE * m_y)
     assert (bar.points[0].y, bar.points[0].z) == (bar.points[1].y, bar.points[1].z)
     assert text.text == f'human {m_y:+.1f} N m'
 
 
+def test_two_moments_are_one_arrow_in_the_plane():
+    bar, text = moment_markers('agent', np.array([5.0, -2.5]), (3, 4), TRAY)
+    along = [getattr(bar.points[1], axis) - getattr(bar.points[0], axis) for axis in 'xyz']
+    assert along == pytest.approx([-2.5 * METRES_PER_NEWTON_METRE, -5.0 * METRES_PER_NEWTON_METRE, 0.0])
+    assert text.text == 'agent +5.0 -2.5 N m'
+
+
 def test_a_viewer_can_tell_all_markers_apart():
     markers = [*tray_markers(TRAY, np.eye(3), BALANCE.scene.boxes), ball_marker(TRAY, 0.015)]
     for source in ('human', 'agent', 'applied'):
-        markers += moment_markers(source, 1.0, TRAY)
+        markers += moment_markers(source, np.ones(1), (4,), TRAY)
     assert len({(marker.ns, marker.id) for marker in markers}) == len(markers)
     assert {marker.header.frame_id for marker in markers} == {'panda_link0'}
     assert {marker.action for marker in markers} == {Marker.ADD}

@@ -43,19 +43,25 @@ def ball_marker(position: np.ndarray, radius: float) -> Marker:
     return marker
 
 
-def moment_markers(source: str, moment: float, tray: np.ndarray) -> list[Marker]:
-    """A bar above the tray (centre ``tray``, (3,), m), to the side that ``moment`` (N m) pushes down, and its figure.
+_ROLLS = {3: np.array([0.0, -1.0, 0.0]), 4: np.array([1.0, 0.0, 0.0])}
+"""Which way a ball rolls on a tray that a positive moment about base x (3) or y (4) has tilted."""
 
-    A positive M_y tilts the side towards base +x down, so the bar points to where the ball will roll.
+
+def moment_markers(source: str, moment: np.ndarray, axes: tuple[int, ...], tray: np.ndarray) -> list[Marker]:
+    """A bar above the tray (centre ``tray``, (3,), m), to where ``moment`` rolls the ball, and its figures.
+
+    Args:
+        moment: along ``axes`` (rows of the wrench), (k,), N m; about base x and y it tilts, about others nothing rolls.
     """
     start = tray + [0.0, 0.0, BAR_HEIGHTS[source]]
     bar = _marker(f'moment {source}', 0, Marker.ARROW, MOMENT_COLOURS[source])
-    bar.points = [_point(start), _point(start + [METRES_PER_NEWTON_METRE * moment, 0.0, 0.0])]
+    roll = sum((_ROLLS.get(axis, np.zeros(3)) * value for axis, value in zip(axes, moment, strict=True)), np.zeros(3))
+    bar.points = [_point(start), _point(start + METRES_PER_NEWTON_METRE * roll)]
     bar.scale = Vector3(x=0.012, y=0.024, z=0.03)  # diameters of shaft and head, length of the head
     text = _marker(f'moment {source}', 1, Marker.TEXT_VIEW_FACING, MOMENT_COLOURS[source])
     text.pose.position = _point(start + [0.0, 0.0, 0.025])
     text.scale.z = 0.025
-    text.text = f'{source} {moment:+.1f} N m'
+    text.text = f'{source} {" ".join(f"{value:+.1f}" for value in moment)} N m'
     return [bar, text]
 
 

@@ -14,8 +14,9 @@ from rclpy.publisher import Publisher
 from shared_control.control.moments import MomentSource
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import RobotModel
+from shared_control.robot.spec_file import panda
+from shared_control.robot.tray import carrying
 from shared_control.scene import Ball
-from shared_control.tasks.balance import BALANCE
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -23,6 +24,7 @@ from shared_control_ros.joints import joint_positions
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.wrenches import moment_of
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray
@@ -53,17 +55,20 @@ class RobotViewNode:
         self._radius = declare(
             node, 'ball_radius', Ball.radius, 'Radius of the ball, as in panda_sim_node.', unit='m',
             minimum=0.005, maximum=0.05)
-        self._model = RobotModel()
-        self._boxes = BALANCE.scene.boxes
+        task = declare_task(node, 'What is taught: the tray, and the axes of the moments.')
+        self._axes = task.axes
+        self._model = RobotModel(carrying(panda(), task.scene))
+        self._boxes = task.scene.boxes
         self._balls = Polled(node, contract.BALL)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
-        self._wrenches = {source: (Polled(node, topic), MomentSource(1)) for source, topic in WRENCHES.items()}
+        self._wrenches = {source: (Polled(node, topic), MomentSource(len(task.axes)))
+                          for source, topic in WRENCHES.items()}
         self._markers = node.create_publisher(MARKERS.msg_type, MARKERS.name, MARKERS.qos)
         self._tf = self._tf_publisher()
         if self._with_arm:
             self._description = node.create_publisher(
                 ROBOT_DESCRIPTION.msg_type, ROBOT_DESCRIPTION.name, ROBOT_DESCRIPTION.qos)
-            self._description.publish(String(data=self._model.spec.urdf.read_text()))
+            self._description.publish(String(data=self._model.spec.description))
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
 
@@ -114,19 +119,19 @@ class RobotViewNode:
         markers = tray_markers(tray, rotation, self._boxes)
         markers.append(ball_marker(np.array([position.x, position.y, position.z]), self._radius))
         for source in WRENCHES:
-            markers += moment_markers(source, self._moment(source, to_ns(ball.header.stamp)), tray)
+            markers += moment_markers(source, self._moment(source, to_ns(ball.header.stamp)), self._axes, tray)
         for marker in markers:
             marker.header.stamp = ball.header.stamp
         return markers
 
-    def _moment(self, source: str, now_ns: int) -> float:
-        """What a source asks for at the moment, N m."""
+    def _moment(self, source: str, now_ns: int) -> np.ndarray:
+        """What a source asks for at the moment, (k,), N m."""
         wrenches, moment = self._wrenches[source]
         message = wrenches.take()
         if message is not None:
             with suppress(ValueError):
-                moment.moment, moment.stamp_ns = moment_of(message), to_ns(message.header.stamp)
-        return float(moment.at(now_ns, STALE_AFTER)[0])
+                moment.moment, moment.stamp_ns = moment_of(message, self._axes), to_ns(message.header.stamp)
+        return moment.at(now_ns, STALE_AFTER)
 
     def close(self) -> None:
         """Nothing to leave behind."""
