@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import yaml
 from shared_control import contract
 from shared_control.keys import Key
 from shared_control.robot.spec_file import panda
@@ -9,6 +10,7 @@ from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import episode_tracks
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_records.bag.timing import simulator_runs
+from shared_control_records.export.frames import episode_frames
 from shared_control_testing import sessions as made
 
 
@@ -123,3 +125,50 @@ def test_tracks_of_the_finished_episodes(tmp_path):
     assert tracks[0].seconds[0] == 0.0
     assert tracks[0].seconds[-1] == pytest.approx(0.99)
     assert tracks[1].end_ns - tracks[1].start_ns == 990_000_000
+
+
+def one_run(number, x, m_y, start_ns, received_ns):
+    """An episode of 2 s with ball and agent at rest, recorded from ``received_ns`` on."""
+    recording = made.record([made.Lesson(np.full(100, x), np.zeros(100), np.full(100, m_y))], start_ns)
+    for topic, _, content in recording.messages:
+        if topic == contract.EPISODE:
+            content.data = number
+    shift = received_ns - start_ns
+    return [(topic, at + shift, content) for topic, at, content in recording.messages]
+
+
+def test_runs_whose_stamps_overlap_are_not_mixed(tmp_path):
+    """A simulator that ran ahead of the clock was started anew: its time is set back by 1.5 s."""
+    ms = made.MS
+    recording = made.Recording([
+        *one_run(1, 0.10, 1.0, made.START_NS, made.START_NS),
+        *one_run(2, -0.05, -1.0, made.START_NS + 500 * ms, made.START_NS + 3000 * ms)])
+    bag = read_bag(recording.write(tmp_path / 'bag'))
+    for frames, x, m_y in zip(episode_frames(bag), (0.10, -0.05), (1.0, -1.0), strict=True):
+        assert len(frames) == 100
+        np.testing.assert_allclose(frames.position_error, x, atol=1e-9)
+        np.testing.assert_array_equal(frames.agent[1:, 0], m_y)
+
+
+def test_the_time_of_the_recorder_runs_on_where_its_clock_was_set_back(tmp_path, recording):
+    """Two files of one bag, the second of which was recorded an hour earlier by the clock."""
+    hour = 3600 * 10**9
+    recording.write(tmp_path / 'one')
+    made.Recording([(topic, at - hour, content) for topic, at, content in recording.messages]).write(tmp_path / 'two')
+    alone = read_bag(tmp_path / 'two')
+    bag = read_bag(joined(tmp_path / 'one', tmp_path / 'two'))
+    assert (np.diff(bag.joint_states.received_ns) >= 0).all()
+    assert bag.end_ns - bag.start_ns < 60 * 10**9
+    assert [track.number for track in episode_tracks(bag)] == 2 * [track.number for track in episode_tracks(alone)]
+
+
+def joined(bag, other):
+    """``bag`` with the file of another one behind its own."""
+    behind, = other.glob('*.mcap')
+    behind.rename(bag / 'behind.mcap')
+    content = yaml.safe_load((bag / 'metadata.yaml').read_text())
+    information = content['rosbag2_bagfile_information']
+    information['relative_file_paths'].append('behind.mcap')
+    information['files'].append({**information['files'][0], 'path': 'behind.mcap'})
+    (bag / 'metadata.yaml').write_text(yaml.safe_dump(content))
+    return bag

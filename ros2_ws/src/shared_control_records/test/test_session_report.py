@@ -5,6 +5,7 @@ import shutil
 
 import numpy as np
 import pytest
+import yaml
 from mcap.reader import make_reader
 from mcap.writer import Writer
 from shared_control.tasks.balance import BALANCE
@@ -196,3 +197,17 @@ def test_columns_are_found_by_name(tmp_path):
     row, = read_episodes(tmp_path / 'episodes.csv')
     assert (row.number, row.phase, row.human_share, row.episode_return, row.fallen) == (4, 'test', 0.25, -3.5, True)
     assert row.seconds is None
+
+
+def test_what_is_packed_into_a_bag_names_no_home_and_no_token(tmp_path):
+    """Bags are handed to others."""
+    folder = SessionFolder.create(tmp_path / 'home' / 'jane.doe' / 'session')
+    folder.parameters.write_text(yaml.safe_dump({'/**/teach_page_node': {'ros__parameters': {
+        'token': 's3cret', 'output': str(folder.bag), 'robot': '/home/jane.doe/robots/ur5.yaml', 'rate': 50.0,
+        'files': [str(folder.learner), '~jane.doe/a.yaml'], 'name': 'a/b'}}}))
+    packed = bag_metadata.pack(folder, restarts=0)
+    assert yaml.safe_load(packed['parameters.yaml']) == {'/**/teach_page_node': {'ros__parameters': {
+        'output': 'bag', 'robot': 'ur5.yaml', 'rate': 50.0, 'files': ['learner', 'a.yaml'], 'name': 'a/b'}}}
+    assert 'jane.doe' not in str(packed) and 's3cret' not in str(packed)
+    folder.parameters.write_text('{')
+    assert 'parameters.yaml' not in bag_metadata.pack(folder, restarts=0)

@@ -37,8 +37,9 @@ class RecordedTopic:
         self._waiting: deque[tuple[bytes, dict]] = deque()
         self.name = self._subscription.topic_name
         self.latched = topic.qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        self.recorded_until = 0
-        """Messages sent up to this time, ns, are in the bag already."""
+        self.depth = topic.qos.depth
+        self.recorded: set[int] = set()
+        """Messages sent at these times, ns, are in the bag already and may come once more."""
         self._sequence = 0
         self._gaps = 0
         self._publishers = 0
@@ -60,7 +61,7 @@ class RecordedTopic:
         self.collect()
         while self._waiting:
             data, info = self._waiting.popleft()
-            if info['source_timestamp'] <= self.recorded_until:
+            if info['source_timestamp'] in self.recorded:
                 continue
             sequence = info['publication_sequence_number'] or 0
             if sequence > self._sequence + 1 and self._sequence:
@@ -99,8 +100,9 @@ class SessionRecorder:
         for topic in self._topics:
             topic.announce(self._bag)
         latched = {topic.name: topic for topic in self._topics if topic.latched}
-        for name, sent in last_sent(self._bag.previous_files, latched).items():
-            latched[name].recorded_until = sent
+        depths = {name: topic.depth for name, topic in latched.items()}
+        for name, sent in last_sent(self._bag.previous_files, depths).items():
+            latched[name].recorded = sent
         self._diagnostics = Diagnostics(self.node, POLL_PERIOD)
         self._background = Background(self.node)
         self._lost = 0

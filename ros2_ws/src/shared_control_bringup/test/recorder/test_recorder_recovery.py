@@ -165,10 +165,12 @@ def test_a_bag_needs_no_ros():
     subprocess.run([sys.executable, '-c', f'{used}; assert "rclpy" not in sys.modules'], check=True)
 
 
-def test_the_newest_message_of_a_latched_topic_is_found(tmp_path):
-    path, _ = record(tmp_path / 'bag')
-    newest = CHUNKS * PER_CHUNK - 1
-    assert last_sent([path], ['/training/episode', '/training/phase']) == {'/training/episode': newest}
+def test_the_newest_messages_of_latched_topics_are_found_across_files(tmp_path):
+    paths = [record(tmp_path / 'bag')[0] for _ in range(2)]
+    sent = {number for number in range(CHUNKS * PER_CHUNK) if number % 2}
+    assert last_sent(paths, {'/training/episode': 2, '/training/phase': 5}) == {
+        '/training/episode': set(sorted(sent)[-2:]), '/training/phase': set()}
+    assert last_sent(paths, {'/training/episode': 100}) == {'/training/episode': sent}
 
 
 def test_an_annotation_stands_in_the_file_and_a_torn_one_costs_no_message(tmp_path):

@@ -21,6 +21,8 @@ class EpisodeTrack:
     phase: str
     start_ns: int
     """The robot's time at its start."""
+    received_ns: tuple[int, int]
+    """The recorder's time at its start and at its end."""
     seconds: np.ndarray
     """(n,), since the start"""
     position_error: np.ndarray
@@ -52,7 +54,8 @@ def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
             continue
         stamps = bag.ball.stamp_ns[first:last]
         tracks.append(EpisodeTrack(
-            int(number), _phase(bag, int((start_ns + ended[0]) / 2)), int(stamps[0]),
+            int(number), _phase(bag, (int(start_ns) + int(ended[0])) // 2), int(stamps[0]),
+            (int(bag.ball.received_ns[first]), int(bag.ball.received_ns[last - 1])),
             (stamps - stamps[0]) * 1e-9, *_seen(bag, slice(first, last), model)))
     return tracks
 

@@ -1,25 +1,28 @@
 """What a recorder that is started again gets told once more."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 
 from mcap.reader import make_reader
 
 
-def last_sent(files: list[Path], topics: Iterable[str]) -> dict[str, int]:
-    """When the newest message of each of these topics in a bag's files was sent, ns; one without any is left out.
+def last_sent(files: list[Path], depths: Mapping[str, int]) -> dict[str, set[int]]:
+    """When the newest messages of some topics in a bag's files were sent, ns.
 
-    Publishers of a latched topic repeat what they said to every new subscriber. Whatever is not newer than this is
-    in the bag already.
+    Publishers of a latched topic repeat the last of what they said to every new subscriber, with the times of then.
+    They are known by these and not by being older: the clock may have been set back.
+
+    Args:
+        files: of the bag, in their order.
+        depths: how many messages of each topic may be repeated.
     """
-    missing = set(topics)
-    found: dict[str, int] = {}
+    found: dict[str, set[int]] = {topic: set() for topic in depths}
     for path in reversed(files):
         with path.open('rb') as file:
             reader = make_reader(file)
-            for topic in sorted(missing):
-                newest = next(reader.iter_messages(topic, reverse=True), None)
-                if newest is not None:
-                    found[topic] = newest[2].publish_time
-                    missing.remove(topic)
+            for topic, depth in depths.items():
+                if missing := max(depth - len(found[topic]), 0):
+                    messages = reader.iter_messages(topic, reverse=True)
+                    found[topic] |= {message.publish_time for _, _, message in islice(messages, missing)}
     return found

@@ -41,7 +41,7 @@ class Bag:
     end_ns: int
     """When the last message was received."""
     counts: dict[str, int]
-    """Messages by topic; a topic that was recorded and stayed silent has 0."""
+    """Messages by topic; a topic that was recorded and stayed silent has 0. Without the graph's namespace."""
     unusable: dict[str, int]
     """Messages that could not be used, by topic."""
     joint_states: JointStates
@@ -138,6 +138,7 @@ class _Collector:
         self._presses: list[Press] = []
         self._statuses: dict[str, list[Status]] = {}
         self._times: list[int] = []
+        self._set_back_ns = 0
 
     def _relative(self, topic: str) -> str:
         """The name of a topic in a graph without a namespace."""
@@ -146,6 +147,7 @@ class _Collector:
     def add(self, connection: Connection, received_ns: int, raw: bytes) -> None:
         """One message."""
         topic = self._relative(connection.topic)
+        received_ns = self._running_on(received_ns)
         self._counts[topic] += 1
         self._times = [self._times[0] if self._times else received_ns, received_ns]
         if topic in self._bulk:
@@ -160,6 +162,12 @@ class _Collector:
                 self._add_keys(received_ns, message)
             else:
                 self._add_statuses(received_ns, message)
+
+    def _running_on(self, received_ns: int) -> int:
+        """The recorder's time, which runs on where its clock was set back between two files of a bag."""
+        if self._times and received_ns + self._set_back_ns < self._times[-1]:
+            self._set_back_ns = self._times[-1] - received_ns
+        return received_ns + self._set_back_ns
 
     def _message(self, raw: bytes, msgtype: str) -> Any:
         """A message, or None when its bytes are garbled: anybody can have published it, and the others count."""
@@ -235,7 +243,7 @@ class _Collector:
     def _add_statuses(self, received_ns: int, message: Any) -> None:
         for status in message.status:
             values = {value.key: value.value for value in status.values}
-            self._statuses.setdefault(status.name.lstrip('/'), []).append(
+            self._statuses.setdefault(status.name.removeprefix(self._namespace).lstrip('/'), []).append(
                 Status(received_ns, status.level == 0, status.message, values))
 
 

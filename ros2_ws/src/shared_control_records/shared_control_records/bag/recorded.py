@@ -1,7 +1,8 @@
 """What a bag holds, as arrays.
 
-``received_ns`` is the wall clock of the recorder, ns; ``stamp_ns`` is the robot's time (simulation time when it is
-simulated), ns. Rows are in the order in which they were received.
+``received_ns`` is the wall clock of the recorder, ns, running on where it was set back between two files of the bag;
+``stamp_ns`` is the robot's time (simulation time when it is simulated), ns. Rows are in the order in which they were
+received.
 """
 
 from dataclasses import dataclass
@@ -46,6 +47,12 @@ class Wrenches:
     """(n,)"""
     moment: np.ndarray
     """Along the task's axes, (n, k), N m"""
+
+    def between(self, window: tuple[int, int]) -> 'Wrenches':
+        """Those received in a window of the recorder's time, in the order of their stamps."""
+        rows = np.flatnonzero((self.received_ns >= window[0]) & (self.received_ns < window[1]))
+        rows = rows[np.argsort(self.stamp_ns[rows], kind='stable')]
+        return Wrenches(self.received_ns[rows], self.stamp_ns[rows], self.moment[rows])
 
     def moment_at(self, stamps_ns: np.ndarray) -> np.ndarray:
         """The newest moment at each of some times of the robot, (m, k), N m; the first one before that.

@@ -11,6 +11,7 @@ from shared_control.tasks.task import Task
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
+from ..bag.runs import run_window
 
 PERIOD_NS = round(POLICY_PERIOD * 1e9)
 
@@ -73,12 +74,20 @@ def episode_frames(bag: Bag) -> list[EpisodeFrames]:
 
 
 def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
-    agent = bag.agent.stamp_ns[np.searchsorted(bag.agent.stamp_ns, track.start_ns):]
+    window = run_window(bag, track.received_ns[0])
+    agent = bag.agent.between(window).stamp_ns
+    agent = agent[np.searchsorted(agent, track.start_ns):]
     # The agent's stamps are those of the states that it acted on.
     start_ns = int(agent[0]) if len(agent) and agent[0] - track.start_ns < PERIOD_NS else track.start_ns
     begin = np.arange(start_ns, track.end_ns, PERIOD_NS)
-    end = begin + PERIOD_NS - 1
-    joints, ball = _newest(bag.joint_states.stamp_ns, begin), _newest(bag.ball.stamp_ns, begin)
+    joints, ball = (_newest(series.received_ns, series.stamp_ns, begin, window)
+                    for series in (bag.joint_states, bag.ball))
+    moments = []
+    for wrenches in (bag.agent_applied, bag.human_applied, bag.applied):
+        own = wrenches.between(window)
+        if not len(own.stamp_ns):
+            raise ValueError(f'the bag {bag.path} has no moments of episode {track.number}')
+        moments.append(own.moment_at(begin + PERIOD_NS - 1))
     q, position = bag.joint_states.q[joints], bag.ball.position[ball]
     model = RobotModel()
     velocity = bag.ball.velocity[ball]
@@ -86,8 +95,7 @@ def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
     seen = seen.reshape(-1, 6)
     return EpisodeFrames(
         bag.task, track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, velocity,
-        seen[:, 0], seen[:, 1], seen[:, 2:4], seen[:, 4:], bag.agent_applied.moment_at(end),
-        bag.human_applied.moment_at(end), bag.applied.moment_at(end))
+        seen[:, 0], seen[:, 1], seen[:, 2:4], seen[:, 4:], *moments)
 
 
 def _seen(task: Task, model: RobotModel, q: np.ndarray, ball: np.ndarray, velocity: np.ndarray) -> list[float]:
@@ -98,6 +106,10 @@ def _seen(task: Task, model: RobotModel, q: np.ndarray, ball: np.ndarray, veloci
     return [state.position_error, pitch(rotation), *rotation.T[:2] @ (ball - origin), *rotation[:2, 2]]
 
 
-def _newest(stamps_ns: np.ndarray, at_ns: np.ndarray) -> np.ndarray:
-    """Indices of the newest messages at some times; the first message when there is none before."""
-    return (np.searchsorted(stamps_ns, at_ns, 'right') - 1).clip(min=0)
+def _newest(received_ns: np.ndarray, stamps_ns: np.ndarray, at_ns: np.ndarray, window: tuple[int, int]) -> np.ndarray:
+    """Indices of the newest messages at some times of the robot, of those received in a window of the recorder's time.
+
+    The first message when there is none before.
+    """
+    first, last = np.searchsorted(received_ns, window)
+    return (np.searchsorted(stamps_ns[first:last], at_ns, 'right') - 1).clip(min=0) + first

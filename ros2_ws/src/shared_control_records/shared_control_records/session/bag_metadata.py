@@ -6,7 +6,9 @@ A session puts it behind the messages as a metadata record of the MCAP file
 
 import json
 from pathlib import Path
+from typing import Any
 
+import yaml
 from shared_control import contract
 from shared_control.files import write_atomically
 
@@ -18,12 +20,36 @@ from .folder import SessionFolder
 
 TUTOR_OF_KEYS = {'tutor': 'simulated: unknown', 'terminal': 'keyboard', 'page': 'keyboard'}
 """Who taught, by the source of the keys in a bag that does not say it."""
+SECRETS = ('token',)
+"""Parameters that are nobody else's business."""
 
 
 def pack(folder: SessionFolder, restarts: int) -> dict[str, str]:
-    """The content of the record for a session that has ended."""
+    """The content of the record for a session that has ended.
+
+    Bags are handed to others: no absolute path is in it, which would name a person's home, and no token.
+    """
     packed = {_key(folder, path): path.read_text() for path in _files(folder) if path.is_file()}
+    parameters = _key(folder, folder.parameters)
+    if parameters in packed:
+        try:
+            shared = _for_others(yaml.safe_load(packed.pop(parameters)), folder.path)
+            packed[parameters] = yaml.safe_dump(shared, sort_keys=False)
+        except yaml.YAMLError:
+            pass  # somebody has damaged it: what it says is not known
     return {**packed, _key(folder, folder.summary): json.dumps({'restarts': restarts})}
+
+
+def _for_others(value: Any, folder: Path) -> Any:
+    """Parameters without secrets; a path within the session's folder relative to it, of others the last name alone."""
+    if isinstance(value, dict):
+        return {key: _for_others(content, folder) for key, content in value.items() if key not in SECRETS}
+    if isinstance(value, list):
+        return [_for_others(content, folder) for content in value]
+    if isinstance(value, str) and value.startswith(('/', '~')):
+        path = Path(value)
+        return str(path.relative_to(folder)) if path.is_relative_to(folder) else path.name
+    return value
 
 
 def unpack(bag: Bag, folder: SessionFolder) -> None:
@@ -45,7 +71,7 @@ def unpack(bag: Bag, folder: SessionFolder) -> None:
 
 def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:
     """An episode as the topics tell it."""
-    until_ns = bag.ball.received_ns[bag.ball.stamp_ns.searchsorted(track.end_ns)]
+    until_ns = track.received_ns[1]
     returns, shares = bag.training[contract.EPISODE_RETURN], bag.training[contract.HUMAN_SHARE]
     ended = returns.received_ns.searchsorted(until_ns)
     shared = shares.received_ns.searchsorted(until_ns) - 1
