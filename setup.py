@@ -20,11 +20,13 @@ BASE = ('panda_tray_description', 'shared_control')
 EXTRAS = {
     'ros': ('shared_control_ros', 'torque_ctrl_node', 'teleop_key_node', 'shared_control_nodes'),
     'sim': ('shared_control_sim',),
+    'mujoco': ('shared_control_sim',),
     'learn': ('shared_control_sim', 'shared_control_learning'),
     'study': ('shared_control_sim', 'shared_control_learning', 'shared_control_records'),
     'page': ('shared_control_ros', 'teach_page_node'),
 }
-"""Packages whose dependencies an extra brings; ``all`` brings those of all packages."""
+"""Packages whose dependencies an extra brings, and those of their own extra of that name; ``all`` brings those of all
+packages, and of all these extras."""
 NOT_INSTALLED = ('shared_control_testing',)
 """For the tests of the workspace alone."""
 OF_ROS = {'rclpy': ('ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces', 'ros-rmw-fastrtps-cpp')}
@@ -61,10 +63,13 @@ def _pins():
     return {_normalized(re.split(r'[\[=]', line)[0]): line for line in lines if '==' in line}
 
 
-def _requirements(packages, names):
-    """What the packages called ``names`` need from others, pinned."""
+def _requirements(packages, names, extras=()):
+    """What the packages called ``names`` need from others, their own ``extras`` included, pinned."""
     pins, own = _pins(), {_normalized(name) for name in (*packages, *NOT_INSTALLED)}
-    needed = {name for package in names for requirement in packages[package].install_requires
+    wanted = {package: [*packages[package].install_requires,
+                        *(name for extra in extras for name in packages[package].extras_require.get(extra, ()))]
+              for package in names}
+    needed = {name for package in names for requirement in wanted[package]
               for name in OF_ROS.get(requirement, (requirement,))}
     return sorted(pins[_normalized(re.split(r'\[', name)[0])] for name in needed if _normalized(name) not in own)
 
@@ -84,7 +89,7 @@ setup(
     package_data={key: value for package in PACKAGES.values() for key, value in (package.package_data or {}).items()},
     install_requires=_requirements(PACKAGES, BASE),
     extras_require={
-        **{extra: _requirements(PACKAGES, names) for extra, names in EXTRAS.items()},
-        'all': _requirements(PACKAGES, PACKAGES)},
+        **{extra: _requirements(PACKAGES, names, (extra,)) for extra, names in EXTRAS.items()},
+        'all': _requirements(PACKAGES, PACKAGES, EXTRAS)},
     entry_points=_entry_points(PACKAGES),
 )

@@ -61,8 +61,8 @@ def test_a_page_shows_what_the_example_says(name, page):
 
 
 @pytest.mark.parametrize('arguments', [
-    ('--task', 'two_axis'), ('--preset', 'cross_entropy'), ('--world', 'point_mass'),
-    ('--task', 'two_axis', '--preset', 'cross_entropy', '--world', 'point_mass')], ids=' '.join)
+    ('--task', 'two_axis'), ('--preset', 'cross_entropy'), ('--physics', 'point_mass'),
+    ('--task', 'two_axis', '--preset', 'cross_entropy', '--physics', 'point_mass')], ids=' '.join)
 def test_it_trains(arguments, installed, tmp_path):
     command = [sys.executable, '-m', 'shared_control', 'train', *arguments, '--output', str(tmp_path / 'run'),
                '--json', str(tmp_path / 'result.json'), '--evaluate-every', '0']
@@ -75,7 +75,7 @@ def test_it_trains(arguments, installed, tmp_path):
 def test_gymnasium_makes_the_task(installed):
     code = ('import gymnasium, shared_control\n'
             'from gymnasium.utils.env_checker import check_env\n'
-            'env = gymnasium.make("shared_control/TwoAxis-v0", world="point_mass", episode_seconds=1.0)\n'
+            'env = gymnasium.make("shared_control/TwoAxis-v0", physics="point_mass", episode_seconds=1.0)\n'
             'check_env(env.unwrapped)\n'
             'print(env.action_space.shape, env.observation_space.shape)')
     said = subprocess.run([sys.executable, '-c', code], env=os.environ | installed, capture_output=True, text=True,

@@ -17,7 +17,8 @@ ROSDEP = {
     'numpy': 'python3-numpy', 'yaml': 'python3-yaml', 'matplotlib': 'python3-matplotlib', 'jinja2': 'python3-jinja2',
     'markupsafe': 'python3-jinja2', 'scipy': 'python3-scipy', 'pandas': 'python3-pandas', 'tqdm': 'python3-tqdm'}
 """Keys of modules that a Jazzy machine gets from Debian packages."""
-PIP = {'pinocchio': 'pin', 'markupsafe': 'jinja2', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
+PIP = {'pinocchio': 'pin', 'mujoco': 'mujoco-core',
+       'markupsafe': 'jinja2', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
 """Where modules come from that are in no distribution of their name."""
 ROS = {'rclpy', 'launch', 'launch_ros'}
 OPTIONAL = {'pytest', 'selenium', 'panda_py', 'ray'}

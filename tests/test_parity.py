@@ -38,15 +38,20 @@ class Script:
         return self.held
 
 
+@pytest.fixture(scope='module', params=['bullet', 'mujoco'])
+def physics(request):
+    return request.param
+
+
 @pytest.fixture
 def person():
     return Script()
 
 
 @pytest.fixture
-def local(person):
+def local(person, physics):
     """The in-process environment, and a list of (q, qd, effort) that grows with every tick."""
-    plant, ticks = LocalPlant(person=person), []
+    plant, ticks = LocalPlant(person=person, physics=physics), []
     step = plant.world.step
 
     def recorded_step(torque):
@@ -61,10 +66,10 @@ def local(person):
 
 
 @pytest.fixture
-def graph(start_node, observer, person):
+def graph(start_node, observer, person, physics):
     """The same on the unpaced graph."""
     states = observer.listen(contract.JOINT_STATES)
-    start_node('panda_sim_node', paced=False)
+    start_node('panda_sim_node', paced=False, physics=physics)
     start_node('torque_ctrl_node', enabled=True, wait_for=['human', 'agent'])
     background = Background(observer.node)
     publisher, wrench = observer.publisher(contract.HUMAN_WRENCH), base_wrench()

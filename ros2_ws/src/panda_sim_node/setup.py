@@ -16,7 +16,7 @@ setup(
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',
-    description='PyBullet simulator of the Panda with tray and ball as a ROS 2 node.',
+    description='Simulator of the Panda with tray and ball as a ROS 2 node.',
     license='Apache-2.0',
     entry_points={'console_scripts': [
         'panda_sim_node = panda_sim_node.node:main',

@@ -14,11 +14,14 @@ setup(
     install_requires=[
         'panda_tray_description', 'shared_control', 'numpy', 'gymnasium', 'pybullet',
     ],
-    extras_require={'test': ['pytest']},
+    extras_require={'mujoco': ['mujoco-core'], 'test': ['pytest']},
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',
-    description='Simulated physics of the shared-control trainer: PyBullet worlds and the plant in this process.',
+    description='Simulated physics of the shared-control trainer: PyBullet, MuJoCo, and the plant in this process.',
     license='Apache-2.0',
-    entry_points={'shared_control.worlds': ['bullet = shared_control_sim.bullet:BulletWorld']},
+    entry_points={'shared_control.worlds': [
+        'bullet = shared_control_sim.bullet:BulletWorld',
+        'mujoco = shared_control_sim.mujoco_world:MujocoWorld',
+    ]},
 )

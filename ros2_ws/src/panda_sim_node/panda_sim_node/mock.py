@@ -12,8 +12,11 @@ import time
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
+from shared_control.plugins import WORLDS, load, names
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
+from shared_control.robot.spec_file import panda
 from shared_control.tasks.task import BallStarts
+from shared_control.world import World
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
@@ -23,7 +26,6 @@ from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
 from shared_control_ros.task_parameter import declare_task
-from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
 from std_srvs.srv import SetBool, Trigger
 
@@ -52,6 +54,7 @@ class MockPandaNode:
             node, 'seed', 0, 'Of ball starts, jitter and losses; setting it begins the ball starts anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
         task = declare_task(node, 'The task: the tray on the flange, and where a ball is dropped.')
+        physics = declare(node, 'physics', 'bullet', 'What it is inside.', choices=names(WORLDS))
         self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
         pace = declare(
@@ -61,7 +64,7 @@ class MockPandaNode:
         self._has_clock = pace < 1.0
 
         self._random = np.random.default_rng(seed)
-        world = BulletWorld(task.scene, CONTROL_PERIOD)
+        world: World = load(WORLDS, physics)(task.scene, CONTROL_PERIOD, panda())
         world.reset(self._starts.next())
         self._robot = EffortPanda(world, timeout, limit_rate)
         self._states = StatePublisher(node, world, with_clock=self._has_clock)

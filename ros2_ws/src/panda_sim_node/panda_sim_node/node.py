@@ -1,4 +1,4 @@
-"""PyBullet simulator of a Panda with a tray and a ball: a robot on topics.
+"""Simulator of a Panda with a tray and a ball: a robot on topics.
 
 Publishes /joint_states (1 kHz), /ball and /clock (100 Hz), takes joint torques on /effort_controller/commands and
 pushes at the tray on /disturbance. Services: simulator/reset (Trigger), simulator/pause (SetBool),

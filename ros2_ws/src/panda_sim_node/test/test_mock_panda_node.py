@@ -6,9 +6,10 @@ import pytest
 from shared_control_ros import contract
 
 
-def test_leaves_cleanly_and_has_told_its_mode(start_node, observer):
+@pytest.mark.parametrize('physics', ['bullet', 'mujoco'])
+def test_leaves_cleanly_and_has_told_its_mode(start_node, observer, physics):
     reports = observer.listen(contract.DIAGNOSTICS)
-    node = start_node('mock_panda_node', pace=0.5)
+    node = start_node('mock_panda_node', pace=0.5, physics=physics)
     observer.spin(lambda: reports)
     assert {v.key: v.value for v in reports[0].status[0].values}['mode'] == 'idle'
     assert 'held by the brakes' in reports[0].status[0].message
@@ -16,7 +17,8 @@ def test_leaves_cleanly_and_has_told_its_mode(start_node, observer):
     assert 'Traceback' not in node.log()
 
 
-@pytest.mark.parametrize(('parameters', 'said'), [({'drop_rate': 2.0}, "'drop_rate'"), ({'pace': 0.0}, "'pace'")])
+@pytest.mark.parametrize(('parameters', 'said'), [({'drop_rate': 2.0}, "'drop_rate'"), ({'pace': 0.0}, "'pace'"),
+                                                    ({'physics': 'flat'}, 'bullet, mujoco')])
 def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('mock_panda_node', **parameters)
     assert node.process.wait(20) == 2

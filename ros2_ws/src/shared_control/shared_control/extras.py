@@ -1,7 +1,7 @@
 """Which extra of the distribution brings a module that is not installed."""
 
 _EXTRAS = {
-    'gymnasium': 'sim', 'pybullet': 'sim', 'shared_control_sim': 'sim',
+    'gymnasium': 'sim', 'pybullet': 'sim', 'mujoco': 'mujoco', 'shared_control_sim': 'sim',
     'torch': 'learn', 'stable_baselines3': 'learn', 'safetensors': 'learn', 'pydantic': 'learn', 'tensorboard': 'learn',
     'tqdm': 'learn', 'shared_control_learning': 'learn',
     'pandas': 'study', 'matplotlib': 'study', 'scipy': 'study', 'mcap': 'study', 'rosbags': 'study',

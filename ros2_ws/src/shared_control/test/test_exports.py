@@ -51,6 +51,7 @@ def test_nothing_is_loaded_before_it_is_asked_for():
 @pytest.mark.parametrize(('module', 'name', 'extra'), [
     ('gymnasium', 'SharedControlEnv', 'sim'), ('pybullet', 'BulletWorld', 'sim'), ('torch', 'train', 'learn'),
     ('pybullet', "load('shared_control.worlds', 'bullet')", 'sim'),
+    ('mujoco', "load('shared_control.worlds', 'mujoco')", 'mujoco'),
     ('shared_control_learning', 'preset', 'learn')])
 def test_what_is_missing_says_how_to_install_it(module, name, extra):
     said = said_by(WITHOUT.format(module=module, name=name))

@@ -12,7 +12,7 @@ from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
-from shared_control.plugins import LEARNERS, TASKS, names
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_bringup.graph import Role, named, nodes_of, overrides
 from shared_control_bringup.launching import (
@@ -35,6 +35,7 @@ def start_nodes(context: LaunchContext) -> list[Node]:
         profile=LaunchConfiguration('profile').perform(context),
         task=LaunchConfiguration('task').perform(context),
         preset=LaunchConfiguration('preset').perform(context),
+        physics=LaunchConfiguration('physics').perform(context),
         episodes=int(LaunchConfiguration('episodes').perform(context)),
         minutes=float(LaunchConfiguration('minutes').perform(context)),
         seed=int(LaunchConfiguration('seed').perform(context)),
@@ -55,6 +56,8 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument('task', default_value='balance', choices=names(TASKS), description='What is learned.'),
         DeclareLaunchArgument('preset', default_value='', choices=['', *names(LEARNERS)],
                               description='How it is learned; empty: as the task is.'),
+        DeclareLaunchArgument('physics', default_value='bullet', choices=names(WORLDS),
+                              description='What the arm moves in.'),
         DeclareLaunchArgument('episodes', default_value='0',
                               description='Teach this many, then test; 0: until somebody says that it has learned it.'),
         DeclareLaunchArgument('minutes', default_value='45.0', description='Teach for this long at the most.'),

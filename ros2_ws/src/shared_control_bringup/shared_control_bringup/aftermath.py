@@ -33,14 +33,15 @@ class _Progress(Callbacks):
             print(f'\rtesting the robot alone [{bar}]', end='' if episode.number < self._episodes else '\n', flush=True)
 
 
-def test_policy(folder: SessionFolder, episodes: int, attend: Callable[[], None]) -> None:
+def test_policy(folder: SessionFolder, episodes: int, physics: str, attend: Callable[[], None]) -> None:
     """Test the session's policy alone, in this process, which equals the graph (tests/test_parity.py).
 
-    ``attend`` is called at every step; it may raise to break the test off, which then leaves nothing behind.
+    ``physics`` is what it was taught in. ``attend`` is called at every step; it may raise to break the test off, which
+    then leaves nothing behind.
     """
     attend()
     learner = load_policy(folder.policy)
-    env = SharedControlEnv(LocalPlant(learner.task), as_tested(learner.task))
+    env = SharedControlEnv(LocalPlant(learner.task, physics=physics), as_tested(learner.task))
     try:
         save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(episodes, attend)), folder.test)
     finally:

@@ -72,7 +72,8 @@ NODES = (
     SessionNode('torque_ctrl_node', lambda s: {
         **_of_the_task(s.settings), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
     SessionNode('panda_sim_node', lambda s: {
-        'task': _of_the_task(s.settings)['task'], 'seed': s.settings.seed}, Role.CONTROL_LOOP),
+        'task': _of_the_task(s.settings)['task'], 'physics': s.settings.physics, 'seed': s.settings.seed},
+        Role.CONTROL_LOOP),
     SessionNode('teleop_key_node', lambda s: {
         'task': _of_the_task(s.settings)['task'],
         'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),

@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from shared_control.plugins import LEARNERS, TASKS, names
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_ros.host_and_port import host_and_port
 
@@ -31,6 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         f'{default.profile})', choices=TUTOR_NAMES)
     add('--task', 'what is learned (default: what the preset was made for; balance)', choices=names(TASKS))
     add('--preset', 'how it is learned (default: as the task is; coached)', choices=names(LEARNERS))
+    add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
     add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '
         f'{default.episodes})', type=int)
     add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float)
@@ -45,7 +46,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--resume', type=Path, metavar='FOLDER',
         help='go on with an earlier session: its learner, its parameters, its folder, and its settings unless other '
-        'options change them; all may be given but --task, --preset, --seed, --output, --overwrite and --params-file')
+        'options change them; all may be given but --task, --preset, --physics, --seed, --output, --overwrite and '
+             '--params-file')
 
 
 def given_settings(args: argparse.Namespace) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
         ros_parameters.save(parameters, folder.parameters)
         print(f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
         end, restarts = _teach(settings, folder, shows_screen, page, interrupts)
-        return _report(folder, end, restarts, settings.test_episodes, interrupts).value
+        return _report(folder, end, restarts, settings, interrupts).value
 
 
 def _test_only(settings: Settings, folder: SessionFolder) -> int:
@@ -76,7 +76,7 @@ def _test_only(settings: Settings, folder: SessionFolder) -> int:
         folder.claim()
         folder.write_settings(settings.to_json())
         print(f'Session in {folder.path}: the teaching is over, the robot is tested.', flush=True)
-        return _report(folder, End.DONE, _earlier_restarts(folder), settings.test_episodes, interrupts).value
+        return _report(folder, End.DONE, _earlier_restarts(folder), settings, interrupts).value
 
 
 def _new_settings(args: argparse.Namespace) -> Settings:
@@ -119,7 +119,7 @@ def _earlier_restarts(folder: SessionFolder) -> int:
     return (folder.read_json(folder.summary) or {}).get('restarts') or 0
 
 
-def _report(folder: SessionFolder, end: End, restarts: int, test_episodes: int, interrupts: Interrupts) -> End:
+def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, interrupts: Interrupts) -> End:
     """Test the policy, complete the bag, write the report, and print what came of it; how the session ended."""
     # Imported late: torch and matplotlib take seconds, and the person wants to begin.
     from shared_control_records.session.report import write_report
@@ -128,9 +128,9 @@ def _report(folder: SessionFolder, end: End, restarts: int, test_episodes: int, 
     try:
         if end is not End.FAILED:
             describe_policy(folder)
-        if end is End.DONE and test_episodes:
+        if end is End.DONE and settings.test_episodes:
             try:
-                test_policy(folder, test_episodes, interrupts.check)
+                test_policy(folder, settings.test_episodes, settings.physics, interrupts.check)
             except KeyboardInterrupt:
                 end = End.STOPPED
         _complete_bag(folder, restarts)

@@ -4,14 +4,14 @@ import math
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-from shared_control.plugins import LEARNERS, TASKS, names
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
 SIMULATED = 'simulated: '
 """Before the profile, where settings.json names a simulated tutor."""
-FIXED = ('task', 'preset', 'seed')
-"""What a session that goes on cannot change: the learner was made with it."""
+FIXED = ('task', 'preset', 'physics', 'seed')
+"""What a session that goes on cannot change: the learner was made with it, and in it."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,8 @@ class Settings:
     """What is learned; empty: what the preset was made for."""
     preset: str = ''
     """How it is learned; empty: as the task is."""
+    physics: str = 'bullet'
+    """What the arm moves in (entry point of the group ``shared_control.worlds``)."""
     tutor: str = 'keyboard'
     """Who teaches: one of ``TUTORS``."""
     profile: str = 'expert'
@@ -50,6 +52,7 @@ class Settings:
     def __post_init__(self) -> None:
         for option, value, choices in (('--task', self.task, ('', *names(TASKS))),
                                        ('--preset', self.preset, ('', *names(LEARNERS))),
+                                       ('--physics', self.physics, names(WORLDS)),
                                        ('--tutor', self.tutor, TUTORS),
                                        ('--profile', self.profile, TUTOR_NAMES)):
             if value not in choices:

@@ -64,7 +64,7 @@ def test_who_taught_before_is_not_forgotten():
     assert settings.to_json()['earlier_tutors'] == ('simulated: low', 'simulated: expert')
 
 
-@pytest.mark.parametrize('given', [('--preset', 'thesis'), ('--task', 'plate'), ('--seed', 3)])
+@pytest.mark.parametrize('given', [('--preset', 'thesis'), ('--task', 'plate'), ('--physics', 'mujoco'), ('--seed', 3)])
 def test_what_the_learner_was_made_with_cannot_change(given):
     with pytest.raises(ValueError, match=f'{given[0]} cannot change in a session that goes on'):
         Settings().resumed_with(options(*given))

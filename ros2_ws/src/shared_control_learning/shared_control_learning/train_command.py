@@ -31,7 +31,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                         'task is; coached)')
     parser.add_argument('--task', choices=names(TASKS), default='', help='what is learned (default: what the preset '
                         'was made for; balance)')
-    parser.add_argument('--world', choices=names(WORLDS), default='bullet', help='the physics (default: bullet)')
+    parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='(default: %(default)s)')
     parser.add_argument('--tutor', choices=(*TUTOR_NAMES, 'none'), help='simulated tutor (default: expert; none for a '
                         'preset that nobody teaches, and for a task that tutors do not know)')
     parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
@@ -68,7 +68,7 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
             result = train(
                 chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.episodes,
-                until_skilled=args.until_skilled, human_only=args.human_only, world=args.world, folder=args.output,
+                until_skilled=args.until_skilled, human_only=args.human_only, physics=args.physics, folder=args.output,
                 tensorboard=True, evaluate_every=args.evaluate_every, callbacks=_Bar(bar, args.output))
     except KeyboardInterrupt:
         print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)

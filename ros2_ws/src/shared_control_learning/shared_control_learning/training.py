@@ -47,6 +47,8 @@ class TrainingRun:
     seed: int
     human_only: bool = False
     """The agent's moment was not applied (4.7)."""
+    physics: str = 'bullet'
+    """What it was taught and tested in."""
     tests: list[tuple[int, bool]] = field(default_factory=list)
     """After how many episodes the policy was tested alone, and whether it passed."""
     returns: list[float] = field(default_factory=list)
@@ -77,7 +79,7 @@ _TRAINING_RUN = TypeAdapter(TrainingRun)
 
 
 def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_skilled: bool = True,
-          human_only: bool = False, world: str = 'bullet', folder: Path | None = None, tensorboard: bool = False,
+          human_only: bool = False, physics: str = 'bullet', folder: Path | None = None, tensorboard: bool = False,
           evaluate_every: int = 1, callbacks: Callbacks | None = None) -> TrainingRun:
     """Teach a policy in this process, by a simulated tutor or by nobody.
 
@@ -90,7 +92,7 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
         episodes: at most so many, those of an earlier part of the run included.
         until_skilled: stop when the policy has passed two tests in a row.
         human_only: the agent's moment is not applied (4.7).
-        world: name of the physics (entry point of the group ``shared_control.worlds``).
+        physics: its name (entry point of the group ``shared_control.worlds``).
         folder: for policy, table and run; nothing is kept when None.
         tensorboard: write logs for TensorBoard there, too.
         evaluate_every: test after so many episodes each, 0: never.
@@ -101,15 +103,15 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
         PolicyFileError: ``folder`` holds an unusable policy.
         ValueError: there is a tutor, and the task has other axes than tutors know.
     """
-    run = TrainingRun(preset.name, None if tutor is None else asdict(tutor), seed, human_only)
+    run = TrainingRun(preset.name, None if tutor is None else asdict(tutor), seed, human_only, physics)
     learner = preset.make(seed)
     if tutor is not None and not can_teach(preset.task):
         raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     if folder is not None:
         learner, run = _resumed(learner, run, folder)
     person = None if tutor is None else make_tutor(tutor, preset.task, seed, learner.episode)
-    env = SharedControlEnv(LocalPlant(preset.task, person, world), preset.task, human_only)
-    test_env = SharedControlEnv(LocalPlant(preset.task, world=world), as_tested(preset.task))
+    env = SharedControlEnv(LocalPlant(preset.task, person, physics), preset.task, human_only)
+    test_env = SharedControlEnv(LocalPlant(preset.task, physics=physics), as_tested(preset.task))
     try:
         learn(learner, env, episodes, _Keeper(
             learner, run, folder, tensorboard, test_env, evaluate_every, until_skilled, callbacks or Callbacks()))
@@ -144,7 +146,7 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
         _write_run(run, folder)  # from now on the folder is known as a run's, however early this one is killed
         return learner, run
     stored = read_run(folder)
-    for name in ('preset', 'tutor', 'seed', 'human_only'):
+    for name in ('preset', 'tutor', 'seed', 'human_only', 'physics'):
         if getattr(stored, name) != getattr(run, name):
             raise TrainingError(f'{folder} holds a run with {name} {getattr(stored, name)!r}, asked for '
                                 f'{getattr(run, name)!r}: name another folder')

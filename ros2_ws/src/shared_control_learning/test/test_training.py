@@ -59,6 +59,16 @@ def test_another_run_is_not_mixed_in(tmp_path):
     train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0)
     with pytest.raises(TrainingError, match='seed 5, asked for 6'):
         train(SHORT, None, 6, 2, folder=tmp_path, evaluate_every=0)
+    with pytest.raises(TrainingError, match="physics 'bullet', asked for 'mujoco'"):
+        train(SHORT, None, 5, 2, folder=tmp_path, evaluate_every=0, physics='mujoco')
+
+
+def test_a_run_keeps_its_physics_and_goes_on_in_it(tmp_path, monkeypatch, capsys):
+    new = ('--task', 'balance', '--episodes', 1, '--evaluate-every', 0, '--output', tmp_path, '--physics', 'mujoco')
+    assert command(monkeypatch, *new) == 0
+    assert read_run(tmp_path).physics == 'mujoco'
+    assert command(monkeypatch, *new[:-2], '--resume') == 2
+    assert "physics 'mujoco', asked for 'bullet'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(('content', 'said'), [

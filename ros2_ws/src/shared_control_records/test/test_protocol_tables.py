@@ -119,7 +119,8 @@ def evaluate(*arguments):
 
 
 def test_the_command_tests_a_policy(session, capsys):
-    assert evaluate(session / 's', '--episodes', 1, '--json', session / 'r.json', '--out', session / 'out') == 0
+    assert evaluate(session / 's', '--episodes', 1, '--physics', 'mujoco', '--json', session / 'r.json',
+                    '--out', session / 'out') == 0
     assert 'randomized' in capsys.readouterr().out
     assert json.loads((session / 'r.json').read_text())['tests']['randomized']['over_policies']['sem'] is None
     assert (session / 'out' / 'fig16_randomized_position_error.svg').exists()

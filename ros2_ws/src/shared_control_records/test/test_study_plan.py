@@ -49,6 +49,14 @@ def test_a_condition_may_be_of_another_task(plan_file):
     assert (coached.task, coached.preset, alone.task) == ('plate', 'coached', '')
 
 
+def test_conditions_have_a_physics_to_train_and_to_be_tested_in(plan_file):
+    plan = load_plan(plan_file(PLAN.replace('episodes: 5', 'physics: mujoco').replace(
+        'episodes: 9', 'tested_in: mujoco')))
+    assert [(c.physics, c.tested_in) for c in plan.conditions] == [('mujoco', None), ('bullet', 'mujoco')]
+    with pytest.raises(PlanError, match=r"conditions\.coached\.physics: no physics 'flat'"):
+        load_plan(plan_file(PLAN.replace('episodes: 5', 'physics: flat')))
+
+
 def test_simulated_participants_differ_around_their_profile():
     drawn = [draw_tutor('high', 0.15, seed) for seed in range(200)]
     for field in fields(drawn[0]):

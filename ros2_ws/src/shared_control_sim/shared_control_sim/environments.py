@@ -9,14 +9,14 @@ from shared_control.teaching.tutors import make_tutor, tutor_named
 from .local_plant import LocalPlant
 
 
-def make_env(task: str, tutor: str | None = None, world: str = 'bullet', human_only: bool = False,
+def make_env(task: str, tutor: str | None = None, physics: str = 'bullet', human_only: bool = False,
              **settings: Any) -> SharedControlEnv:
     """The environment of the task called ``task``.
 
     Args:
         task: name (entry point of the group ``shared_control.tasks``).
         tutor: name of a simulated tutor (``expert``, ``crossover``, ...); nobody at the keys when None.
-        world: name of the physics (entry point of the group ``shared_control.worlds``).
+        physics: its name (entry point of the group ``shared_control.worlds``).
         human_only: the agent's moment is not applied.
         settings: of the task, as its class has them (``episode_seconds``, ``action_scale``, ...).
 
@@ -28,4 +28,4 @@ def make_env(task: str, tutor: str | None = None, world: str = 'bullet', human_o
     """
     chosen = load(TASKS, task)(**settings)
     person = None if tutor is None else make_tutor(tutor_named(tutor), chosen)
-    return SharedControlEnv(LocalPlant(chosen, person, world), chosen, human_only)
+    return SharedControlEnv(LocalPlant(chosen, person, physics), chosen, human_only)

@@ -33,14 +33,14 @@ class LocalPlant:
     Args:
         task: axes, limits, scene and ball starts.
         person: who presses keys; nobody when None.
-        world: name of the physics (entry point of the group ``shared_control.worlds``).
+        physics: its name (entry point of the group ``shared_control.worlds``).
         robot: the robot; the Panda when not given.
     """
 
-    def __init__(self, task: Task = BALANCE, person: Person | None = None, world: str = 'bullet',
+    def __init__(self, task: Task = BALANCE, person: Person | None = None, physics: str = 'bullet',
                  robot: RobotSpec | None = None):
         self.spec = carrying(panda() if robot is None else robot, task.scene)
-        self.world: World = load(WORLDS, world)(task.scene, CONTROL_PERIOD, self.spec)
+        self.world: World = load(WORLDS, physics)(task.scene, CONTROL_PERIOD, self.spec)
         self.controller = ComputedTorqueController(RobotModel(self.spec), task.axes, dt=CONTROL_PERIOD)
         self._person = person
         self._limit = task.limit

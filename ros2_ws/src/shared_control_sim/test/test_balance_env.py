@@ -10,8 +10,8 @@ from stable_baselines3.common.env_checker import check_env as check_env_for_sb3
 
 
 @pytest.fixture
-def env():
-    env = SharedControlEnv(LocalPlant())
+def env(physics):
+    env = SharedControlEnv(LocalPlant(physics=physics))
     yield env
     env.close()
 
@@ -48,8 +48,8 @@ def test_episode_ends_after_its_time(env):
     assert info['agent'][0] == pytest.approx(-0.26 * 8.0)
 
 
-def test_a_fall_terminates_and_costs():
-    env = SharedControlEnv(LocalPlant(THESIS), THESIS)
+def test_a_fall_terminates_and_costs(physics):
+    env = SharedControlEnv(LocalPlant(THESIS, physics=physics), THESIS)
     env.reset(seed=0)
     for _ in range(750):
         _, reward, terminated, truncated, info = env.step(np.array([1.0]))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController
+from shared_control.plugins import WORLDS, load
 from shared_control.robot.reflex import command_violation, state_violation
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
-from shared_control_sim.bullet import BulletWorld
 from shared_control_sim.effort_arm import EffortPanda, Mode
 
 STILL = np.zeros(7)
@@ -14,8 +14,8 @@ JUMP = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.5, 0.0])
 
 
 @pytest.fixture
-def world():
-    world = BulletWorld()
+def world(physics):
+    world = load(WORLDS, physics)()
     yield world
     world.close()
 

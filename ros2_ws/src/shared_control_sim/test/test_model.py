@@ -1,12 +1,15 @@
-"""The pinocchio model: against known numbers, finite differences and PyBullet."""
+"""The pinocchio model: against known numbers, finite differences, PyBullet and MuJoCo."""
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pybullet
 import pytest
 from shared_control.robot.model import RobotModel, manipulability, pitch
 from shared_control.robot.spec_file import panda
+from shared_control_sim.bullet import BulletWorld
+from shared_control_sim.mujoco_world import MujocoWorld
 
 
 def random_states(count):
@@ -43,7 +46,8 @@ def test_jacobian_is_the_derivative_of_the_pose(model):
             np.testing.assert_allclose(jacobian[3:, joint], [spin[2, 1], spin[0, 2], spin[1, 0]], atol=1e-7)
 
 
-def test_pybullet_agrees_on_mass_matrix_gravity_and_coriolis(model, world):
+def test_pybullet_agrees_on_mass_matrix_gravity_and_coriolis(model):
+    world = BulletWorld()
     still = [0.0] * panda().dof
     for q, qd in random_states(20):
         mass = np.array(pybullet.calculateMassMatrix(world.arm, list(q), physicsClientId=world.client))
@@ -57,6 +61,22 @@ def test_pybullet_agrees_on_mass_matrix_gravity_and_coriolis(model, world):
         np.testing.assert_allclose(model.gravity(q), gravity, atol=1e-11)
         coriolis = model.nonlinear_effects(q, qd) - model.gravity(q)
         np.testing.assert_allclose(coriolis, inverse_dynamics(qd) - gravity, atol=1e-11)
+    world.close()
+
+
+def test_mujoco_agrees_on_mass_matrix_gravity_coriolis_and_tray_pose(model):
+    world, n = MujocoWorld(), panda().dof
+    mass = np.zeros((world.model.nv, world.model.nv))
+    for q, qd in random_states(100):
+        world.data.qpos[:n], world.data.qvel[:n] = q, qd
+        mujoco.mj_forward(world.model, world.data)
+        mujoco.mj_fullM(world.model, world.data, mass)
+        np.testing.assert_allclose(model.mass_matrix(q), mass[:n, :n], atol=1e-13)
+        np.testing.assert_allclose(model.nonlinear_effects(q, qd), world.data.qfrc_bias[:n], atol=1e-12)
+        position, rotation = model.tray_pose(q)
+        tray = world.data.body(panda().tool_frame)
+        np.testing.assert_allclose(position, tray.xpos, atol=1e-13)
+        np.testing.assert_allclose(rotation, tray.xmat.reshape(3, 3), atol=1e-13)
 
 
 def test_manipulability_at_home(model):

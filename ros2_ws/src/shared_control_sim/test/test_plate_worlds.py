@@ -1,4 +1,4 @@
-"""The plate and its bar in the simulated world, moved by the controller about both axes."""
+"""The plate and its bar in the simulated worlds, moved by the controller about both axes."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,8 @@ from shared_control_sim.local_plant import LocalPlant
 
 
 @pytest.fixture
-def plant(request):
-    made = LocalPlant(request.param)
+def plant(request, physics):
+    made = LocalPlant(request.param, physics=physics)
     yield made
     made.close()
 
@@ -56,8 +56,8 @@ def test_the_gap_lets_it_through(plant):
 
 
 @pytest.mark.parametrize('task', [Plate(), Detour()])
-def test_episodes_repeat_to_the_bit(task):
-    env = SharedControlEnv(LocalPlant(task), task)
+def test_episodes_repeat_to_the_bit(task, physics):
+    env = SharedControlEnv(LocalPlant(task, physics=physics), task)
     tracks = []
     for _ in range(2):
         observation, _ = env.reset(seed=3)

@@ -26,8 +26,8 @@ not tell the signs; why these, see docs/reference/protocols.md."""
 class PushedPlant(LocalPlant):
     """A plant whose tray is pushed with ``force`` (N, base axes) at fixed times of the episode."""
 
-    def __init__(self, task: Task, force: tuple[float, float, float]):
-        super().__init__(task)
+    def __init__(self, task: Task, force: tuple[float, float, float], physics: str = 'bullet'):
+        super().__init__(task, physics=physics)
         self._goal = np.array(task.scene.home) + [*task.scene.goal, 0.0]
         self._force = np.array(force)
 
@@ -50,12 +50,12 @@ class PushedPlant(LocalPlant):
 
 
 def run_perturbation(act: Act, task: Task = BALANCE, force: tuple[float, float, float] = FORCE,
-                     callbacks: Callbacks | None = None) -> ProtocolResult:
+                     callbacks: Callbacks | None = None, physics: str = 'bullet') -> ProtocolResult:
     """Test ``act`` alone in one episode of 30 s in which the tray is pushed twice with ``force``.
 
     See :func:`run_randomized` for the other arguments.
     """
-    env = RecordingEnv(PushedPlant(task, force), replace(task, episode_seconds=SECONDS))
+    env = RecordingEnv(PushedPlant(task, force, physics), replace(task, episode_seconds=SECONDS))
     try:
         run_test_episode(act, env, 1, TEST_SEED, callbacks or Callbacks())
     finally:

@@ -11,8 +11,8 @@ from .result import ProtocolResult
 
 
 def run_randomized(act: Act, task: Task = BALANCE, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
-                   callbacks: Callbacks | None = None) -> ProtocolResult:
-    """Test ``act`` alone, by :func:`shared_control_learning.evaluation.evaluate.evaluate`, on the PyBullet plant.
+                   callbacks: Callbacks | None = None, physics: str = 'bullet') -> ProtocolResult:
+    """Test ``act`` alone, by :func:`shared_control_learning.evaluation.evaluate.evaluate` in this process.
 
     Args:
         act: the policy, observation (n,) -> action (k,).
@@ -20,8 +20,9 @@ def run_randomized(act: Act, task: Task = BALANCE, episodes: int = TEST_EPISODES
         episodes: rows of the result.
         seed: of the ball starts.
         callbacks: called for each episode.
+        physics: what it is tested in (entry point of the group ``shared_control.worlds``).
     """
-    env = RecordingEnv(LocalPlant(task), as_tested(task))
+    env = RecordingEnv(LocalPlant(task, physics=physics), as_tested(task))
     try:
         evaluate(act, env, episodes, seed, callbacks)
     finally:

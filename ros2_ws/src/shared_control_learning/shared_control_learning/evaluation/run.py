@@ -14,7 +14,7 @@ PROTOCOLS = ('randomized', 'perturbation', 'trajectory')
 
 
 def run_protocol(name: str, act: Act, task: Task, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
-                 callbacks: Callbacks | None = None) -> list[ProtocolResult]:
+                 callbacks: Callbacks | None = None, physics: str = 'bullet') -> list[ProtocolResult]:
     """The results of a protocol: one, or one a frequency.
 
     Args:
@@ -23,12 +23,13 @@ def run_protocol(name: str, act: Act, task: Task, episodes: int = TEST_EPISODES,
         task: what it was trained for.
         episodes, seed: of the randomised test; the others have one episode that is always the same.
         callbacks: called for each episode.
+        physics: what it is tested in (entry point of the group ``shared_control.worlds``).
     """
     if name == 'randomized':
-        return [run_randomized(act, task, episodes, seed, callbacks)]
+        return [run_randomized(act, task, episodes, seed, callbacks, physics)]
     if name == 'perturbation':
-        return [run_perturbation(act, task, callbacks=callbacks)]
-    return [run_trajectory(act, frequency, task, callbacks) for frequency in FREQUENCIES]
+        return [run_perturbation(act, task, callbacks=callbacks, physics=physics)]
+    return [run_trajectory(act, frequency, task, callbacks, physics) for frequency in FREQUENCIES]
 
 
 def count_episodes(name: str, episodes: int = TEST_EPISODES) -> int:

@@ -23,8 +23,8 @@ SECONDS = 20.0
 class DrivenPlant(LocalPlant):
     """A plant whose joints follow the cosine reference of ``frequency`` (Hz) instead of standing still."""
 
-    def __init__(self, task: Task, frequency: float):
-        super().__init__(task)
+    def __init__(self, task: Task, frequency: float, physics: str = 'bullet'):
+        super().__init__(task, physics=physics)
         self._goal = np.array(task.scene.home) + [*task.scene.goal, 0.0]
         self._reference = cosine_reference(RobotModel(self.spec), frequency, SECONDS, CONTROL_PERIOD)
 
@@ -46,13 +46,13 @@ class DrivenPlant(LocalPlant):
 
 
 def run_trajectory(act: Act, frequency: float, task: Task = BALANCE, callbacks: Callbacks | None = None,
-                   ) -> ProtocolResult:
+                   physics: str = 'bullet') -> ProtocolResult:
     """Test ``act`` alone in one episode of 20 s on a tray that moves at ``frequency`` (Hz).
 
     See :func:`run_randomized` for the other arguments; the thesis' frequencies are
     ``shared_control.control.references.FREQUENCIES``.
     """
-    env = RecordingEnv(DrivenPlant(task, frequency), replace(task, episode_seconds=SECONDS))
+    env = RecordingEnv(DrivenPlant(task, frequency, physics), replace(task, episode_seconds=SECONDS))
     try:
         run_test_episode(act, env, 1, TEST_SEED, callbacks or Callbacks())
     finally:

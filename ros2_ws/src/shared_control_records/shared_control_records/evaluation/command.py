@@ -9,6 +9,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from shared_control.plugins import WORLDS, names
+
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``evaluate`` to the ``shared-control`` command."""
@@ -19,6 +21,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                         help='policy.safetensors, or folder of a session or training run; several are one condition')
     parser.add_argument('--protocol', choices=('randomized', 'perturbation', 'trajectory'), default='randomized',
                         help='which test (default: %(default)s)')
+    parser.add_argument('--physics', choices=names(WORLDS), default='bullet',
+                        help='what they are tested in, whatever they were trained in (default: %(default)s)')
     parser.add_argument('--episodes', type=int, default=20, help='of the randomized test (default: %(default)s)')
     parser.add_argument('--seed', type=int, default=None, help='of its ball starts; always the same when not given')
     parser.add_argument('--until-known', action='store_true',
@@ -41,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from .policies import load_policies
     policies = load_policies(args.policies)
     seed = TEST_SEED if args.seed is None else args.seed
-    return _decide(policies, seed, args.json) if args.until_known else _test(policies, args, seed)
+    return _decide(policies, args.physics, seed, args.json) if args.until_known else _test(policies, args, seed)
 
 
 def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
@@ -65,10 +69,10 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
         for name, policy in policies.items():
             bar.set_description(name)
             results[name] = run_protocol(
-                args.protocol, policy.act, policy.task, args.episodes, seed, Progress())
+                args.protocol, policy.act, policy.task, args.episodes, seed, Progress(), args.physics)
     print(text_table(results))
     if args.json:
-        write_json(results, args.json, protocol=args.protocol, seed=seed)
+        write_json(results, args.json, protocol=args.protocol, physics=args.physics, seed=seed)
         print(f'Written to {args.json}')
     if args.out:
         args.out.mkdir(parents=True, exist_ok=True)
@@ -80,7 +84,7 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
     return 0
 
 
-def _decide(policies: dict[str, Any], seed: int, path: Path | None) -> int:
+def _decide(policies: dict[str, Any], physics: str, seed: int, path: Path | None) -> int:
     import json
 
     from shared_control.env import SharedControlEnv
@@ -90,7 +94,7 @@ def _decide(policies: dict[str, Any], seed: int, path: Path | None) -> int:
     answers = {}
     for name, policy in policies.items():
         task = policy.task
-        env = SharedControlEnv(LocalPlant(task), as_tested(task))
+        env = SharedControlEnv(LocalPlant(task, physics=physics), as_tested(task))
         try:
             answers[name] = passes(policy.act, env, seed)
         finally:
@@ -98,5 +102,6 @@ def _decide(policies: dict[str, Any], seed: int, path: Path | None) -> int:
         print(f'{name}: {"passes" if answers[name] else "does not pass"}')
     if path:
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(path, (json.dumps({'seed': seed, 'passes': answers}, indent=2) + '\n').encode())
+        content = {'seed': seed, 'physics': physics, 'passes': answers}
+        write_atomically(path, (json.dumps(content, indent=2) + '\n').encode())
     return 0

@@ -50,7 +50,7 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     training = train(
         preset_for(job.condition.task, job.condition.preset),
         job.participant.tutor if job.condition.taught else None, job.participant.seed, job.condition.episodes,
-        until_skilled=True, folder=path, evaluate_every=job.condition.evaluate_every)
+        until_skilled=True, physics=job.condition.physics, folder=path, evaluate_every=job.condition.evaluate_every)
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
         episodes=table(path / TABLE_NAME), tests=run_tests(plan, job, path / POLICY_NAME),
@@ -75,14 +75,15 @@ def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
 def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
     """What the plan has every policy go through, by name."""
     learner = load_policy(policy)
-    task = learner.task
+    task, physics = learner.task, job.condition.tested_in or job.condition.physics
     results = []
     if 'randomized' in plan.tests:
-        results.append(run_randomized(learner.act, task, seed=episode_seed(TEST_SEED, job.participant.number)))
+        results.append(run_randomized(
+            learner.act, task, seed=episode_seed(TEST_SEED, job.participant.number), physics=physics))
     if 'perturbation' in plan.tests:
-        results.append(run_perturbation(learner.act, task))
+        results.append(run_perturbation(learner.act, task, physics=physics))
     if 'trajectory' in plan.tests:
-        results += [run_trajectory(learner.act, frequency, task) for frequency in FREQUENCIES]
+        results += [run_trajectory(learner.act, frequency, task, physics=physics) for frequency in FREQUENCIES]
     return {result.test: result for result in results}
 
 

@@ -68,7 +68,8 @@ def _consent(people: People, progress: Progress) -> bool:
 
 
 def _learning(condition: Condition) -> list[str]:
-    return ['--preset', condition.preset, *(['--task', condition.task] if condition.task else [])]
+    task = ['--task', condition.task] if condition.task else []
+    return ['--preset', condition.preset, *task, '--physics', condition.physics]
 
 
 def _teaching(condition: Condition, people: People) -> list[str]:

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, get_args
 
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, field_validator, model_validator
+from shared_control.plugins import WORLDS, names
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.presets import preset, preset_for
 from shared_control_learning.wrong_content import shortened
@@ -27,6 +28,12 @@ def _known_task(name: str) -> str:
 
 def _known_tutor(name: str) -> str:
     tutor_named(name)
+    return name
+
+
+def _known_physics(name: str) -> str:
+    if name not in names(WORLDS):
+        raise ValueError(f'no physics {name!r}; there are {", ".join(names(WORLDS))}')
     return name
 
 
@@ -80,6 +87,10 @@ class Learning(Section):
     """Whether the participant teaches; otherwise the robot learns alone, from the same seed."""
     evaluate_every: Episodes = 1
     """Episodes between two tests of whether the robot is skilled."""
+    physics: Annotated[Name, AfterValidator(_known_physics)] = 'bullet'
+    """What it is trained in (an entry point of ``shared_control.worlds``)."""
+    tested_in: Annotated[Name, AfterValidator(_known_physics)] | None = None
+    """What the policy is tested in at the end; as trained when the plan does not say."""
 
 
 class People(Section):

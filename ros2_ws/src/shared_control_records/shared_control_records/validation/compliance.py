@@ -6,8 +6,8 @@ import numpy as np
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.model import RobotModel
+from shared_control.world import World
 from shared_control.wrench import AXIS_NAMES
-from shared_control_sim.bullet import BulletWorld
 
 AXES = (3, 4)
 """Moments about base x and base y: rows of the wrench."""
@@ -36,7 +36,7 @@ class Compliance:
         return all(abs(m - p) <= AGREEMENT * most for m, p in zip(self.measured, self.predicted, strict=True))
 
 
-def check_compliance(model: RobotModel, world: BulletWorld) -> list[Compliance]:
+def check_compliance(model: RobotModel, world: World) -> list[Compliance]:
     """One check an axis, with the task gains and without a ball."""
     jacobian = model.jacobian(model.spec.home)[list(AXES)].copy()
     predicted = np.degrees(jacobian / model.spec.gains['task'].kp @ jacobian.T)
@@ -46,7 +46,7 @@ def check_compliance(model: RobotModel, world: BulletWorld) -> list[Compliance]:
             for index, row in enumerate(AXES)]
 
 
-def _tilt(model: RobotModel, world: BulletWorld, moment: np.ndarray) -> np.ndarray:
+def _tilt(model: RobotModel, world: World, moment: np.ndarray) -> np.ndarray:
     """Rotation of the tray about base x and y after a moment has acted for long, (2,), rad."""
     controller = ComputedTorqueController(model, AXES, dt=CONTROL_PERIOD)
     world.reset(_BESIDE_THE_TRAY)

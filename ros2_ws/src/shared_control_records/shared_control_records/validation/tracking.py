@@ -7,7 +7,7 @@ from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.references import JointReference, cosine_velocity
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.model import RobotModel, manipulability
-from shared_control_sim.bullet import BulletWorld
+from shared_control.world import World
 
 SECONDS = 8.0
 """Length of a run, s: two periods of the slowest reference. The thesis does not say."""
@@ -52,7 +52,7 @@ class Tracking:
         return _rms((self.measured - self.reference)[self.seconds >= SETTLING_SECONDS])
 
 
-def track(model: RobotModel, world: BulletWorld, gains: str, nonlinear_terms: bool, frequency: float,
+def track(model: RobotModel, world: World, gains: str, nonlinear_terms: bool, frequency: float,
           reference: JointReference) -> Tracking:
     """Let the arm follow ``reference``, made for ``frequency`` (Hz)."""
     controller = ComputedTorqueController(
