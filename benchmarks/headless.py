@@ -63,4 +63,5 @@ def _figures(rounds: list[tuple[float, float]]) -> dict[str, Any]:
 
 
 def _spread(name: str, values: list[float]) -> dict[str, Any]:
-    return {name: round(statistics.median(values), 3), f'{name}_min_max': [round(min(values), 3), round(max(values), 3)]}
+    middle, low, high = (round(value, 3) for value in (statistics.median(values), min(values), max(values)))
+    return {name: middle, f'{name}_min_max': [low, high]}

@@ -88,7 +88,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     ('episodes: 5', 'task: juggle', "no task 'juggle'; there are balance, detour, plate"),
     ('coached: {', 'coach: {', "conditions.coach.preset: no learner 'coach'; there are autonomous"),
     ('episodes: 5', 'episodes: five', "conditions.coached.episodes: Input should be a valid integer, found 'five'"),
-    ('episodes: 5', 'epochs: 5', "conditions.coached: no key 'epochs'; there are episodes, evaluate_every, preset"),
+    ('episodes: 5', 'epochs: 5', "conditions.coached: no key 'epochs'; there are episodes, evaluate_every, physics"),
     ('taught: false', 'taught: maybe', "conditions.alone.taught: Input should be a valid boolean, found 'maybe'"),
     ('conditions:', 'tests: [jump]\nconditions:', "tests.0: Input should be 'randomized', 'perturbation' or"),
     ('alone:', '../alone:', 'a condition is named by letters'),
