@@ -8,7 +8,9 @@ from shared_control.keys import Key
 from shared_control.robot.spec_file import panda
 from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import episode_tracks
+from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_records.bag.ticks import digests
 from shared_control_records.bag.timing import simulator_runs
 from shared_control_records.export.frames import episode_frames
 from shared_control_testing import sessions as made
@@ -20,7 +22,7 @@ def recording():
 
 
 def test_every_message_comes_back(recording, tmp_path):
-    bag = read_bag(recording.write(tmp_path / 'bag'))
+    bag = read_bag(recording.write(tmp_path / 'bag'), every_tick=True)
     states = recording.of(contract.JOINT_STATES)
     joints = bag.joint_states
     assert bag.counts[contract.JOINT_STATES.full_name] == len(joints.stamp_ns) == 2000
@@ -31,7 +33,11 @@ def test_every_message_comes_back(recording, tmp_path):
     np.testing.assert_array_equal(joints.q, [state.position for state in states])
     np.testing.assert_array_equal(joints.qd, [state.velocity for state in states])
     np.testing.assert_array_equal(joints.effort, [state.effort for state in states])
-    np.testing.assert_array_equal(bag.commands.torque, [sent.data for sent in recording.of(contract.EFFORT_COMMANDS)])
+    np.testing.assert_array_equal(bag.ticks.stamp_ns, joints.stamp_ns)
+    np.testing.assert_array_equal(bag.ticks.at_rest, (joints.qd == 0.0).all(axis=1))
+    np.testing.assert_array_equal(bag.ticks.effort, digests(joints.effort))
+    np.testing.assert_array_equal(
+        bag.commands.torque, digests(np.array([sent.data for sent in recording.of(contract.EFFORT_COMMANDS)])))
     np.testing.assert_array_equal(bag.agent.moment[:, 0], [
         w.wrench.torque.y for w in recording.of(contract.AGENT_WRENCH)])
     balls = recording.of(contract.BALL)
@@ -40,6 +46,34 @@ def test_every_message_comes_back(recording, tmp_path):
     np.testing.assert_array_equal(bag.training[contract.PHASE].values, ['teach', 'teach'])
     assert bag.statuses['panda_sim_node'][-1].number('ticks') == 2000
     assert bag.statuses['panda_sim_node'][-1].number('nothing') is None
+
+
+def test_joint_states_of_every_10_ms_are_kept_unless_all_are_asked_for(recording, tmp_path, monkeypatch):
+    path = recording.write(tmp_path / 'bag')
+    whole = read_bag(path, every_tick=True)
+    for block in (7, 20_000):
+        monkeypatch.setattr(bulk, 'BLOCK', block)
+        thinned = read_bag(path)
+        for name in ('received_ns', 'stamp_ns', 'q', 'qd', 'effort'):
+            np.testing.assert_array_equal(
+                getattr(thinned.joint_states, name), getattr(whole.joint_states, name)[::10])
+        np.testing.assert_array_equal(thinned.ticks.effort, whole.ticks.effort)
+        assert check_bag(thinned) == check_bag(whole) == []
+    np.testing.assert_array_equal(thinned.joint_states.stamp_ns, thinned.ball.stamp_ns, 'those of the ball')
+    for one, other in zip(episode_tracks(thinned), episode_tracks(whole), strict=True):
+        np.testing.assert_array_equal(one.position_error, other.position_error)
+
+
+def test_digests_tell_torques_apart():
+    random = np.random.default_rng(0)
+    rows = random.normal(0.0, 20.0, (20_000, 7))
+    rows[1:] = np.where(random.random((19_999, 7)) < 0.5, rows[1:], rows[:-1])  # many differ in a few joints only
+    found = digests(rows)
+    assert len(np.unique(found)) == len(np.unique(rows, axis=0))
+    np.testing.assert_array_equal(digests(rows[::-1]), found[::-1])
+    assert digests(np.array([[0.0, 1.0]]))[0] == digests(np.array([[-0.0, 1.0]]))[0]
+    assert digests(np.array([[1.0, 2.0]]))[0] != digests(np.array([[2.0, 1.0]]))[0]
+    assert digests(np.array([[1.0, 1.0]]))[0] != digests(np.array([[2.0, 2.0]]))[0]
 
 
 def test_a_simulator_is_known_by_what_it_reports(tmp_path):
@@ -61,11 +95,11 @@ def test_a_bag_of_several_blocks_with_odd_messages(recording, tmp_path, monkeypa
     states[701].name = states[701].name[:3]
     states[702].name = list(reversed(states[702].name))
     recording.of(contract.EFFORT_COMMANDS)[5].data = np.zeros(2)
-    bag = read_bag(recording.write(tmp_path / 'bag'))
+    bag = read_bag(recording.write(tmp_path / 'bag'), every_tick=True)
     assert bag.unusable == {'/joint_states': 2, '/effort_controller/commands': 1}
     usable = [state for index, state in enumerate(states) if index not in (701, 702)]
     np.testing.assert_array_equal(bag.joint_states.effort, [state.effort for state in usable])
-    assert bag.commands.torque.shape == (1999, panda().dof)
+    assert bag.commands.torque.shape == (1999,)
 
 
 def test_garbled_messages_are_unusable_and_the_others_count(recording, tmp_path):

@@ -63,7 +63,7 @@ def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
 def _seen(bag: Bag, samples: slice, model: RobotModel) -> tuple[np.ndarray, np.ndarray, bool]:
     """At some samples of /ball: position errors, (n,), m; the ball on the tray, (n, 2), m; whether the task failed."""
     joints, ball, task = bag.joint_states, bag.ball, bag.task
-    index = np.searchsorted(joints.received_ns, ball.received_ns[samples]).clip(max=len(joints.received_ns) - 1)
+    index = (np.searchsorted(joints.received_ns, ball.received_ns[samples], 'right') - 1).clip(min=0)
     none = np.zeros(len(task.axes))
     errors, on_tray, failed = [], [], False
     for q, position, velocity in zip(joints.q[index], ball.position[samples], ball.velocity[samples], strict=True):

@@ -7,7 +7,7 @@ import numpy as np
 from shared_control import contract
 
 from .reader import Bag
-from .recorded import JointStates, Wrenches
+from .recorded import Wrenches
 from .timing import simulator_runs
 
 TICK_NS = 1_000_000
@@ -50,10 +50,10 @@ def _check_topics(bag: Bag, expected: Iterable[str]) -> Iterator[str]:
 
 def _check_joint_states(bag: Bag) -> Iterator[str]:
     """A tick is 1 ms after the one before, or a repetition of it, or the first of a simulator that started anew."""
-    joints = bag.joint_states
+    joints = bag.ticks
     steps = np.diff(joints.stamp_ns)
     odd = np.flatnonzero((steps != TICK_NS) & (steps != 0)) + 1
-    fresh = odd[(joints.stamp_ns[odd] % POLICY_NS == 0) & _is_reset(joints)[odd]]
+    fresh = odd[(joints.stamp_ns[odd] % POLICY_NS == 0) & joints.at_rest[odd]]
     gaps = np.setdiff1d(odd, fresh[:_restarts(bag)])
     if len(gaps):
         missing = (joints.stamp_ns[gaps] - joints.stamp_ns[gaps - 1]) / TICK_NS - 1
@@ -68,7 +68,7 @@ def _check_commands(bag: Bag) -> Iterator[str]:
     The last tick before an end or a restart may be left without an answer, and a repeated tick may have two. Only what
     the recorder heard after it had found both the simulator and the controller is compared.
     """
-    joints, commands = bag.joint_states, bag.commands
+    joints, commands = bag.ticks, bag.commands
     if not len(joints.stamp_ns) or not len(commands.torque):
         return
     new = np.diff(joints.stamp_ns, prepend=0) != 0
@@ -79,17 +79,11 @@ def _check_commands(bag: Bag) -> Iterator[str]:
     if not -repetitions - AT_START <= ticks - answers <= AT_START + _restarts(bag):
         yield (f'{EFFORT_COMMANDS}: {answers} commands for {ticks} ticks of '
                f'{JOINT_STATES}')
-    commanded = set(map(bytes, commands.torque + 0.0))  # + 0.0 makes -0.0 the same as 0.0
-    applied = joints.effort + 0.0
-    strange = [tick for tick in np.flatnonzero(~_is_reset(joints)) if bytes(applied[tick]) not in commanded]
-    if strange:
+    # An episode begins at rest, with a torque that nobody commanded.
+    strange = np.flatnonzero(~joints.at_rest & ~np.isin(joints.effort, commands.torque))
+    if len(strange):
         yield (f'{EFFORT_COMMANDS}: {_count(len(strange), "tick")} with a torque that was not commanded; '
                f'the first after {_seconds(bag, joints.received_ns[strange[0]])}')
-
-
-def _is_reset(joints: JointStates) -> np.ndarray:
-    """Whether a tick is the first of an episode: the arm is at rest, and holds a torque that nobody commanded."""
-    return (joints.qd == 0.0).all(axis=1)
 
 
 def _check_applied(bag: Bag) -> Iterator[str]:

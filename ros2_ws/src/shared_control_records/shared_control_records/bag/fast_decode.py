@@ -45,26 +45,52 @@ def _layout(size: int, fields: dict[str, tuple[int, str, int]]) -> np.dtype:
         'formats': [(kind, count) for _, kind, count in fields.values()]})
 
 
+class Columns:
+    """Rows of arrays as they come, a block at a time."""
+
+    def __init__(self) -> None:
+        self._times: list[np.ndarray] = []
+        self._blocks: list[Row] = []
+
+    def add(self, times: np.ndarray, columns: Row) -> None:
+        """When the messages of a block were received, ns, and an array a field."""
+        self._times.append(times)
+        self._blocks.append(columns)
+
+    def finish(self) -> tuple[np.ndarray, list[np.ndarray]]:
+        """All times, and one array a field; none without rows. The blocks are given up, so that no two copies stay."""
+        if not self._times:
+            return np.empty(0, np.int64), []
+        columns = [list(parts) for parts in zip(*self._blocks, strict=True)]
+        self._blocks.clear()
+        joined = []
+        while columns:
+            joined.append(np.concatenate(columns.pop(0)))
+        times = np.concatenate(self._times)
+        self._times.clear()
+        return times, joined
+
+
 class BulkTopic:
-    """Collects the messages of one topic.
+    """Decodes the messages of one topic.
 
     Args:
         decode: gives the fields of one message, in the order of the layout.
         layout: where they stand.
         smallest: bytes below which a message cannot have that layout.
+        add: takes each block: when its messages were received, ns, and an array a field.
     """
 
-    def __init__(self, decode: Decode, layout: Layout, smallest: int):
+    def __init__(self, decode: Decode, layout: Layout, smallest: int, add: Callable[[np.ndarray, Row], None]):
         self._decode = decode
         self._layout = layout
         self._smallest = smallest
+        self._add = add
         self._dtype: np.dtype | None = None
         self._pattern = np.empty(0, np.uint8)
         self._constant = np.empty(0, bool)
         self._waiting: list[bytes] = []
         self._waiting_times: list[int] = []
-        self._times: list[np.ndarray] = []
-        self._columns: list[Row] = []
         self.unusable = 0
         """Messages that could not be decoded."""
 
@@ -75,13 +101,9 @@ class BulkTopic:
         if len(self._waiting) == BLOCK:
             self._decode_waiting()
 
-    def finish(self) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Times of all usable messages, and one array a field."""
+    def finish(self) -> None:
+        """Decode what waits."""
         self._decode_waiting()
-        if not self._times:
-            return np.empty(0, np.int64), []
-        columns = [np.concatenate(parts) for parts in zip(*self._columns, strict=True)]
-        return np.concatenate(self._times), columns
 
     def _decode_waiting(self) -> None:
         messages, self._waiting = self._waiting, []
@@ -125,8 +147,7 @@ class BulkTopic:
         start = 0
         for odd in (*np.flatnonzero(~alike), len(block)):
             if odd > start:
-                self._times.append(times[start:odd])
-                self._columns.append(tuple(block[name][start:odd].copy() for name in dtype.names))
+                self._add(times[start:odd], tuple(block[name][start:odd].copy() for name in dtype.names))
             if odd < len(block):
                 self._decode_one(times[odd], messages[odd])
             start = odd + 1
@@ -136,5 +157,4 @@ class BulkTopic:
         if row is None:
             self.unusable += 1
             return
-        self._times.append(np.array([time]))
-        self._columns.append(tuple(value[np.newaxis] for value in row))
+        self._add(np.array([time]), tuple(value[np.newaxis] for value in row))

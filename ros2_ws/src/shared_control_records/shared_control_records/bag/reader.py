@@ -1,5 +1,6 @@
 """Reading a session's bag into arrays."""
 
+from array import array
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,11 +18,12 @@ from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.task import Task
 
-from .fast_decode import BulkTopic, Row, command_layout, joint_state_layout, wrench_layout
+from .fast_decode import BulkTopic, Columns, Row, command_layout, joint_state_layout, wrench_layout
 from .files import BagReadError
 from .metadata import is_finished
-from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Wrenches
+from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Ticks, Wrenches
 from .task import recorded_task
+from .ticks import JointStateRows, digests, to_ns
 
 _WRENCHES = (
     contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
@@ -44,6 +46,7 @@ class Bag:
     """Messages by topic; a topic that was recorded and stayed silent has 0. Without the graph's namespace."""
     unusable: dict[str, int]
     """Messages that could not be used, by topic."""
+    ticks: Ticks
     joint_states: JointStates
     commands: Commands
     human: Wrenches
@@ -64,11 +67,12 @@ class Bag:
     """Reports on /diagnostics, by the name of the node."""
 
 
-def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = None) -> Bag:
+def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = None, *, every_tick: bool = False) -> Bag:
     """Read a bag of ``robot`` (the Panda when not given): a rosbag2 folder or a single MCAP file.
 
     Args:
         task: along whose axes moments are taken from wrenches; the one that the bag was recorded of when not given.
+        every_tick: keep the joint states of every tick, 0.7 GB an hour, and not those of every 10 ms alone.
 
     Raises:
         BagReadError: there is none, or it was not finished, or it is damaged.
@@ -79,7 +83,7 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
         task = recorded_task(path) if task is None else task
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
-            collector = _Collector(reader, namespace, task, panda() if robot is None else robot)
+            collector = _Collector(reader, namespace, task, panda() if robot is None else robot, every_tick)
             for connection, received_ns, raw in reader.messages():
                 collector.add(connection, received_ns, raw)
             return collector.finish(path)
@@ -120,19 +124,25 @@ def recorded_namespace(bag: Path, topics: Iterable[str]) -> str:
 class _Collector:
     """Sorts the messages of a bag by topic, decoding them."""
 
-    def __init__(self, reader: AnyReader, namespace: str, task: Task, robot: RobotSpec):
+    def __init__(self, reader: AnyReader, namespace: str, task: Task, robot: RobotSpec,
+                 every_tick: bool):
         self._reader, self._namespace, self._task, self._robot = reader, namespace, task, robot
         self._counts = Counter({self._relative(connection.topic): 0 for connection in reader.connections})
         self._unusable: Counter[str] = Counter()
+        self._joint_rows = JointStateRows(every_tick)
+        self._commands = Columns()
+        self._wrench_rows = {topic.full_name: Columns() for topic in _WRENCHES}
         self._bulk = {
             contract.JOINT_STATES.full_name: BulkTopic(
-                self._joint_state, joint_state_layout(robot.dof), 24 + 24 * robot.dof),
+                self._joint_state, joint_state_layout(robot.dof), 24 + 24 * robot.dof, self._joint_rows.add),
             contract.EFFORT_COMMANDS.full_name: BulkTopic(
-                self._command, command_layout(robot.dof), 4 + 8 * robot.dof),
-            **{topic.full_name: BulkTopic(self._wrench, wrench_layout, _SMALLEST_WRENCH) for topic in _WRENCHES}}
+                self._command, command_layout(robot.dof), 4 + 8 * robot.dof,
+                lambda times, row: self._commands.add(times, (digests(row[0]),))),
+            **{name: BulkTopic(self._wrench, wrench_layout, _SMALLEST_WRENCH, rows.add)
+               for name, rows in self._wrench_rows.items()}}
+        self._ball_times, self._ball_numbers = array('q'), array('d')
         self._rows: dict[str, list[tuple[Any, ...]]] = {}
         self._decoders = {
-            contract.BALL.full_name: _ball,
             **{topic.full_name: lambda message: (message.data,) for topic in contract.TRAINING}}
         self._keys: dict[str, KeyPresses] = {}
         self._presses: list[Press] = []
@@ -152,12 +162,15 @@ class _Collector:
         self._times = [self._times[0] if self._times else received_ns, received_ns]
         if topic in self._bulk:
             self._bulk[topic].add(received_ns, raw)
-        elif topic in self._decoders or topic in (contract.KEYS.full_name, contract.DIAGNOSTICS.full_name):
+        elif topic in self._decoders or topic in (
+                contract.BALL.full_name, contract.KEYS.full_name, contract.DIAGNOSTICS.full_name):
             message = self._message(raw, connection.msgtype)
             if message is None:
                 self._unusable[topic] += 1
             elif topic in self._decoders:
                 self._rows.setdefault(topic, []).append((received_ns, *self._decoders[topic](message)))
+            elif topic == contract.BALL.full_name:
+                self._add_ball(received_ns, message)
             elif topic == contract.KEYS.full_name:
                 self._add_keys(received_ns, message)
             else:
@@ -179,37 +192,32 @@ class _Collector:
     def finish(self, path: Path) -> Bag:
         """Everything as arrays."""
         start_ns, end_ns = self._times or (0, 0)
+        for topic, bulk in self._bulk.items():
+            bulk.finish()
+            self._unusable[topic] += bulk.unusable
+        no_joints = np.empty((0, self._robot.dof))
+        ball = np.array(self._ball_numbers).reshape(-1, 2, 3)
         return Bag(
             path=path, task=self._task, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
-            joint_states=JointStates(*self._bulk_columns(
-                contract.JOINT_STATES, _no_stamps(), *(np.empty((0, self._robot.dof)) for _ in range(3)))),
-            commands=Commands(*self._bulk_columns(contract.EFFORT_COMMANDS, np.empty((0, self._robot.dof)))),
+            ticks=Ticks(*_joined(self._joint_rows.ticks, _no_stamps(), np.empty(0, bool), np.empty(0, np.uint64))),
+            joint_states=JointStates(*_joined(self._joint_rows.states, _no_stamps(), no_joints, no_joints, no_joints)),
+            commands=Commands(*_joined(self._commands, np.empty(0, np.uint64))),
             human=self._wrenches(contract.HUMAN_WRENCH), agent=self._wrenches(contract.AGENT_WRENCH),
             applied=self._wrenches(contract.APPLIED_WRENCH),
             human_applied=self._wrenches(contract.HUMAN_APPLIED),
             agent_applied=self._wrenches(contract.AGENT_APPLIED),
-            ball=BallTrack(*self._columns(contract.BALL, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
+            ball=BallTrack(*np.array(self._ball_times, np.int64).reshape(-1, 2).T, ball[:, 0], ball[:, 1]),
             training={topic: Series(*self._columns(topic, np.empty(0))) for topic in contract.TRAINING},
             presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
-
-    def _bulk_columns(self, topic: Topic, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
-        bulk = self._bulk[topic.full_name]
-        times, columns = bulk.finish()
-        self._unusable[topic.full_name] += bulk.unusable
-        if not columns:
-            return times, *empty
-        if topic != contract.EFFORT_COMMANDS:  # which alone have no stamp: seconds and nanoseconds
-            columns[0] = columns[0].astype(np.int64) @ np.array([1_000_000_000, 1])
-        return times, *columns
 
     def _columns(self, topic: Topic, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
         rows = self._rows.get(topic.full_name)
         return tuple(np.array(column) for column in zip(*rows, strict=True)) if rows else (_no_stamps(), *empty)
 
     def _wrenches(self, topic: Topic) -> Wrenches:
-        received_ns, stamp_ns, force, torque = self._bulk_columns(
-            topic, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))
-        return Wrenches(received_ns, stamp_ns, np.hstack((force, torque))[:, self._task.axes])
+        received_ns, stamp, force, torque = _joined(
+            self._wrench_rows[topic.full_name], np.empty((0, 2)), np.empty((0, 3)), np.empty((0, 3)))
+        return Wrenches(received_ns, to_ns(stamp), np.hstack((force, torque))[:, self._task.axes])
 
     def _joint_state(self, raw: bytes) -> Row | None:
         message = self._message(raw, contract.JOINT_STATES.type)
@@ -231,6 +239,11 @@ class _Collector:
         message = self._message(raw, contract.EFFORT_COMMANDS.type)
         return None if message is None or len(message.data) != self._robot.dof else (message.data,)
 
+    def _add_ball(self, received_ns: int, message: Any) -> None:
+        position, velocity = message.pose.pose.position, message.twist.twist.linear
+        self._ball_times.extend((received_ns, _stamp_ns(message)))
+        self._ball_numbers.extend((position.x, position.y, position.z, velocity.x, velocity.y, velocity.z))
+
     def _add_keys(self, received_ns: int, message: Any) -> None:
         source = message.header.frame_id
         try:
@@ -247,9 +260,10 @@ class _Collector:
                 Status(received_ns, status.level == 0, status.message, values))
 
 
-def _ball(message: Any) -> tuple[Any, ...]:
-    position, velocity = message.pose.pose.position, message.twist.twist.linear
-    return (_stamp_ns(message), (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z))
+def _joined(rows: Columns, *empty: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Times and fields of all rows; without any, those of ``empty``."""
+    times, columns = rows.finish()
+    return (times, *(columns or empty))
 
 
 def _stamp_ns(message: Any) -> int:

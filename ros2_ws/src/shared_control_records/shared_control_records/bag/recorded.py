@@ -12,8 +12,22 @@ from shared_control.keys import Key
 
 
 @dataclass(frozen=True, eq=False)
+class Ticks:
+    """What is kept of every single /joint_states; a tick that nobody answered may appear again."""
+
+    received_ns: np.ndarray
+    """(n,)"""
+    stamp_ns: np.ndarray
+    """(n,)"""
+    at_rest: np.ndarray
+    """(n,), bool: no joint moves, as at the first tick of an episode."""
+    effort: np.ndarray
+    """(n,): digests of the torques that were applied last."""
+
+
+@dataclass(frozen=True, eq=False)
 class JointStates:
-    """/joint_states; a tick that nobody answered may appear again."""
+    """The first /joint_states of every 10 ms, those of /ball; all of them when that was asked for."""
 
     received_ns: np.ndarray
     """(n,)"""
@@ -34,7 +48,7 @@ class Commands:
     received_ns: np.ndarray
     """(n,)"""
     torque: np.ndarray
-    """(n, joints), N m"""
+    """(n,): digests of the torques."""
 
 
 @dataclass(frozen=True, eq=False)

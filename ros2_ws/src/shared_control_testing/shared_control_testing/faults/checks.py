@@ -33,7 +33,7 @@ def violations(path: Path, recorder_killed_ns: list[int], lost_rows: bool) -> li
     """
     folder = SessionFolder.open(path)
     try:
-        bag = read_bag(folder.bag)
+        bag = read_bag(folder.bag, every_tick=True)
     except BagReadError as error:
         return [f'bag: {error}']
     return [*_torques(bag, panda()), *_moments(bag, 0.1), *_sums(bag), *_mcap(folder.bag, bag),
