@@ -4,6 +4,7 @@ import itertools
 import sys
 import time
 from collections import deque
+from pathlib import Path
 
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -92,13 +93,17 @@ class SessionRecorder:
         self._flush_period: float = declare(
             self.node, 'flush_period', 0.25, 'At most this much is lost when the recorder is killed.',
             unit='s', minimum=0.05, maximum=0.5)
+        self._split_seconds: float = 60.0 * declare(
+            self.node, 'split_minutes', 15.0, 'The bag goes on in another file after this; 0: never.', unit='min',
+            minimum=0.0, maximum=1440.0)
+        self._split_bytes: float = 1e6 * declare(
+            self.node, 'split_megabytes', 1000.0, 'The bag goes on in another file after this much; 0: never.',
+            unit='MB', minimum=0.0, maximum=1e6)
         self._topics = [RecordedTopic(self.node, topic) for topic in contract.BAG_TOPICS]
         # After a long recording was killed, this takes a while. What comes meanwhile is recorded, too.
-        self._bag = BagWriter(output, meanwhile=self._collect)
+        self._open(output)
         for recovered in self._bag.recovered:
             self.node.get_logger().warning(f'finished what a killed recorder left behind: {recovered}')
-        for topic in self._topics:
-            topic.announce(self._bag)
         latched = {topic.name: topic for topic in self._topics if topic.latched}
         depths = {name: topic.depth for name, topic in latched.items()}
         for name, sent in last_sent(self._bag.previous_files, depths).items():
@@ -106,7 +111,25 @@ class SessionRecorder:
         self._diagnostics = Diagnostics(self.node, POLL_PERIOD)
         self._background = Background(self.node)
         self._lost = 0
+        self._messages = self._bytes = 0
+        """In the files before this one."""
         self.node.get_logger().info(f'recording {len(self._topics)} topics into {self._bag.path}')
+
+    def _open(self, bag: str | Path) -> None:
+        """Begin the next file of the bag."""
+        self._bag = BagWriter(bag, meanwhile=self._collect)
+        self._began = time.monotonic()
+        for topic in self._topics:
+            topic.announce(self._bag)
+
+    def _split_if_full(self) -> None:
+        """Go on in another file. What comes meanwhile waits with the middleware."""
+        seconds, size = time.monotonic() - self._began, self._bag.bytes
+        if 0.0 < self._split_seconds <= seconds or 0.0 < self._split_bytes <= size:
+            self._bag.finish()
+            self._messages += self._bag.messages
+            self._bytes += self._bag.bytes
+            self._open(self._bag.bag)
 
     def run(self, stop: Stop) -> None:
         """Record until ``stop.requested``, then finish the file."""
@@ -119,6 +142,7 @@ class SessionRecorder:
             self._drain()
             if started >= next_flush:
                 self._bag.flush()
+                self._split_if_full()
                 next_flush = started + self._flush_period
             if self._diagnostics.due():
                 self._report()
@@ -147,7 +171,7 @@ class SessionRecorder:
         self._lost += sum(lost.values())
         self._diagnostics.publish(
             {name: f'{count} messages lost in the last second' for name, count in lost.items()},
-            messages=self._bag.messages, lost=self._lost, bytes=self._bag.bytes)
+            messages=self._messages + self._bag.messages, lost=self._lost, bytes=self._bytes + self._bag.bytes)
 
 
 def main(args: list[str] | None = None) -> int:

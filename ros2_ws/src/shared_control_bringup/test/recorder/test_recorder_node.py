@@ -98,6 +98,22 @@ def test_everything_is_recorded_as_rosbag2_does(start_recorder, traffic, tmp_pat
             topics[channel.topic]['topic_metadata']['offered_qos_profiles'])
 
 
+def test_a_long_recording_goes_on_in_other_files_without_a_gap(start_recorder, traffic, tmp_path):
+    bag = tmp_path / 'bag'
+    recorder = start_recorder(bag, split_minutes=0.01, split_megabytes=0.0)
+    traffic.wait_for_recorder()
+    traffic.run(3.0)
+    code, errors = recorder.stop(signal.SIGINT)
+    assert code == 0, errors
+    recorded = read_with_rosbags(bag)
+    for topic, sent in traffic.sent.items():
+        assert recorded[topic] == sent, topic
+    files = sorted(path.name for path in bag.glob('*.mcap'))
+    assert len(files) > 2 and sorted(metadata(bag)['relative_file_paths']) == files
+    counts = [len(read_with_mcap(bag / name).get('/joint_states', [])) for name in files]
+    assert sum(counts) == 3000 and max(counts) < 1500
+
+
 def test_a_killed_recorder_loses_at_most_a_second_and_the_next_goes_on(start_recorder, traffic, tmp_path):
     bag = tmp_path / 'bag'
     recorder = start_recorder(bag)

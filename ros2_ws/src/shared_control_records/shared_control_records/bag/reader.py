@@ -196,6 +196,7 @@ class _Collector:
             bulk.finish()
             self._unusable[topic] += bulk.unusable
         no_joints = np.empty((0, self._robot.dof))
+        ball_ns = np.array(self._ball_times, np.int64).reshape(-1, 2)
         ball = np.array(self._ball_numbers).reshape(-1, 2, 3)
         return Bag(
             path=path, task=self._task, start_ns=start_ns, end_ns=end_ns, counts=dict(self._counts),
@@ -206,7 +207,7 @@ class _Collector:
             applied=self._wrenches(contract.APPLIED_WRENCH),
             human_applied=self._wrenches(contract.HUMAN_APPLIED),
             agent_applied=self._wrenches(contract.AGENT_APPLIED),
-            ball=BallTrack(*np.array(self._ball_times, np.int64).reshape(-1, 2).T, ball[:, 0], ball[:, 1]),
+            ball=BallTrack(ball_ns[:, 0], ball_ns[:, 1], ball[:, 0], ball[:, 1]),
             training={topic: Series(*self._columns(topic, np.empty(0))) for topic in contract.TRAINING},
             presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
 
