@@ -9,10 +9,11 @@ import yaml
 from mcap.reader import make_reader
 from mcap.writer import Writer
 from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.detour import Detour
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import Evaluation
 from shared_control_records.bag.task import RECORD
-from shared_control_records.session import bag_metadata, report
+from shared_control_records.session import bag_metadata, picture, report
 from shared_control_records.session.bag_report import write_bag_report
 from shared_control_records.session.episodes import read_episodes
 from shared_control_records.session.final_test import load_test, save_test
@@ -211,3 +212,24 @@ def test_what_is_packed_into_a_bag_names_no_home_and_no_token(tmp_path):
     assert 'jane.doe' not in str(packed) and 's3cret' not in str(packed)
     folder.parameters.write_text('{')
     assert 'parameters.yaml' not in bag_metadata.pack(folder, restarts=0)
+
+
+def test_a_session_with_two_axes_is_reported_from_above(tmp_path, lessons, bag, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(picture, 'draw_track', lambda axes, scene, track, *_: drawn.append((scene, track)))
+    folder = SessionFolder.create(tmp_path / 'session', settings={'preset': 'coached_network', 'task': 'detour'})
+    shutil.copytree(bag, folder.bag)
+    made.write_episodes(folder.episodes, lessons)
+    task = Detour()
+    way = np.linspace((-0.05, -0.08), task.scene.goal, 750)
+    episode = Episode(task, 1, 'test', position_error=[0.01] * 750, velocity=[0.0] * 750, on_tray=way.tolist())
+    save_test(Evaluation((episode,) * 20), folder.test)
+    summary = write_report(folder)
+    assert (summary.task, summary.autonomous_success) == ('detour', 20)
+    assert folder.picture.read_bytes().startswith(PNG)
+    taught, alone = drawn[:3], drawn[3:]
+    assert len(alone) == 20 and {scene.goal for scene, _ in drawn} == {task.scene.goal}
+    np.testing.assert_allclose(alone[0][1][0], (-0.05, -0.08))
+    for (_, track), lesson in zip(taught, lessons, strict=True):
+        assert np.ptp(track[:, 0]) == pytest.approx(np.ptp(lesson.position_error), abs=0.01)
+    assert 'under 3 cm' in folder.report.read_text(), 'the radius of the goal of this task'

@@ -21,8 +21,8 @@ def draw_tray(axes: Axes, scene: Scene) -> None:
         if box.is_obstacle:
             size, centre = 100 * np.array(box.size[:2]), 100 * np.array(box.centre[:2])
             axes.add_patch(Rectangle(tuple(centre - size / 2), *size.tolist(), color=INK))
-    axes.add_patch(Circle(tuple(100 * np.array(scene.goal)), 100 * scene.goal_radius, color=GOOD, alpha=0.25,
-                          linewidth=0))
+    axes.add_patch(Circle(tuple(100 * np.array(scene.goal)), 100 * scene.goal_radius, fill=False, edgecolor=GOOD,
+                          linewidth=2.5, zorder=3))
 
 
 def draw_track(axes: Axes, scene: Scene, track: np.ndarray, colour: object, alpha: float, is_lost: bool) -> None:
