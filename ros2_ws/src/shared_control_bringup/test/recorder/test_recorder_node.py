@@ -111,7 +111,7 @@ def test_a_long_recording_goes_on_in_other_files_without_a_gap(start_recorder, t
     files = sorted(path.name for path in bag.glob('*.mcap'))
     assert len(files) > 2 and sorted(metadata(bag)['relative_file_paths']) == files
     counts = [len(read_with_mcap(bag / name).get('/joint_states', [])) for name in files]
-    assert sum(counts) == 3000 and max(counts) < 1500
+    assert sum(counts) == 3000 and sum(count > 0 for count in counts) > 1
 
 
 def test_a_killed_recorder_loses_at_most_a_second_and_the_next_goes_on(start_recorder, traffic, tmp_path):
