@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, Joy
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import load_robot
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from shared_control_sim.local_plant import LocalPlant
 
 EXAMPLE = Path(__file__).parents[1] / 'examples' / 'ur5_robot'
 
@@ -72,3 +73,36 @@ def test_an_unknown_robot_is_refused(start_node):
     node = start_node('torque_ctrl_node', robot='nobody')
     assert node.process.wait(30) != 0
     assert "parameter 'robot': no robot 'nobody'" in node.log()
+
+
+def test_the_plant_in_process_holds_it_too(ur5):
+    plant = LocalPlant(robot=ur5)
+    plant.reset(0)
+    for _ in range(50):
+        state = plant.advance(np.array([5.0]))
+    plant.close()
+    off = np.abs(state.q - ur5.home)
+    assert 0.001 < off.max() < 0.1, 'held, and turned by the moment'
+
+
+class TestTheGraphOfAnotherRobot:
+    """Simulator, controller, keys: each is given the robot by its name."""
+
+    def test_the_moment_of_the_keys_reaches_the_arm(self, ur5, start_node, observer):
+        for node, parameters in (('torque_ctrl_node', {'enabled': True}), ('panda_sim_node', {'paced': False}),
+                                 ('teleop_key_node', {'use_sim_time': True})):
+            start_node(node, robot='ur5', **parameters)
+        states, used = observer.listen(contract.JOINT_STATES_THROTTLE), observer.listen(contract.HUMAN_APPLIED)
+        keys = observer.publisher(contract.KEYS)
+
+        def held():
+            keys.publish(joy)
+            return used and used[-1].wrench.torque.y == 5.0
+
+        joy = Joy(buttons=[0, 0, 0])
+        joy.header.frame_id = 'test'
+        observer.spin(lambda: held() is not None and states and keys.get_subscription_count())
+        joy.buttons = [1, 0, 0]
+        observer.spin(held, 40.0, 'the moment of the key')
+        assert list(states[-1].name) == list(ur5.joints) and used[-1].header.frame_id == 'base_link'
+        assert np.abs(np.array(states[-1].position) - ur5.home).max() < 0.1, 'the controller holds the arm'

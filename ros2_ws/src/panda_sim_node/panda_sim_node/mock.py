@@ -1,9 +1,9 @@
 """Mock of an effort-controlled Panda with tray and ball: the topics of a real robot and its behaviour, simulated.
 
 Its clock runs freely (wall time, no /clock), its ticks jitter, it loses commands, carries its own weight, stops by
-itself when a limit is violated, and recovers when asked to. Services: robot/error_recovery (Trigger), simulator/reset
-(Trigger), simulator/set_parameters (SetParameters: seed), simulator/pause (SetBool, refused: a robot's time does not
-stand still).
+itself when a limit is violated, and recovers when asked to. Services: robot/enable (SetBool; it begins enabled),
+robot/error_recovery (Trigger), simulator/reset (Trigger), simulator/set_parameters (SetParameters: seed),
+simulator/pause (SetBool, refused: a robot's time does not stand still).
 """
 
 import gc
@@ -14,7 +14,6 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
 from shared_control.plugins import WORLDS, load, names
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
-from shared_control.robot.spec_file import panda
 from shared_control.tasks.task import BallStarts
 from shared_control.world import World
 from shared_control_ros import contract
@@ -23,6 +22,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
 from shared_control_ros.task_parameter import declare_task
@@ -40,6 +40,7 @@ class MockPandaNode:
 
     def __init__(self) -> None:
         self.node = node = Node('mock_panda_node')
+        robot = declare_robot(node)
         self._jitter = declare(
             node, 'jitter', 0.0005, 'A tick comes up to so much early or late.', unit='s', minimum=0.0, maximum=0.01)
         self._drop_rate = declare(
@@ -64,12 +65,13 @@ class MockPandaNode:
         self._has_clock = pace < 1.0
 
         self._random = np.random.default_rng(seed)
-        world: World = load(WORLDS, physics)(task.scene, CONTROL_PERIOD, panda())
+        world: World = load(WORLDS, physics)(task.scene, CONTROL_PERIOD, robot)
         world.reset(self._starts.next())
         self._robot = EffortPanda(world, timeout, limit_rate)
         self._states = StatePublisher(node, world, with_clock=self._has_clock)
         self._commands = TorqueInput(node, world.spec.dof)
         self._pushes = PushInput(node, world, round(timeout / CONTROL_PERIOD))
+        node.create_service(SetBool, contract.ROBOT_ENABLE_SERVICE, self._on_enable)
         node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
@@ -77,6 +79,7 @@ class MockPandaNode:
         self._diagnostics = Diagnostics(node, self._period)
 
         self._tick = 0
+        self._enabled = True
         self._reflexes = 0
         self._dropped = 0
 
@@ -120,12 +123,25 @@ class MockPandaNode:
 
     def _take_command(self) -> np.ndarray | None:
         torque = self._commands.take_torque()
+        if not self._enabled:
+            return None
         if torque is not None and self._random.random() < self._drop_rate:
             self._dropped += 1
             return None
         return torque
 
     # -- services ----------------------------------------------------------------------------------------------------
+
+    def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        if request.data and self._robot.mode is Mode.REFLEX:
+            response.success = False
+            response.message = f'not enabled: {self._fault()}'
+            return response
+        self._enabled = request.data
+        response.success = True
+        response.message = ('enabled: the next torques move the arm' if self._enabled else
+                            'disabled: the brakes hold the arm once torques have been silent')
+        return response
 
     def _on_error_recovery(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success = self._robot.recover()
@@ -163,6 +179,9 @@ class MockPandaNode:
         problems = {}
         if mode is Mode.REFLEX:
             problems['robot'] = self._fault()
+        elif not self._enabled:
+            problems[self._commands.topic_name] = (
+                f'disabled: {self.node.resolve_service_name(contract.ROBOT_ENABLE_SERVICE)} to go on')
         elif mode is Mode.IDLE:
             problems[self._commands.topic_name] = 'no torques: held by the brakes'
         self._diagnostics.publish(

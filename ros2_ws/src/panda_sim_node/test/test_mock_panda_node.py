@@ -4,6 +4,8 @@ import signal
 
 import pytest
 from shared_control_ros import contract
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool
 
 
 @pytest.mark.parametrize('physics', ['bullet', 'mujoco'])
@@ -23,3 +25,25 @@ def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('mock_panda_node', **parameters)
     assert node.process.wait(20) == 2
     assert said in node.log() and 'Traceback' not in node.log()
+
+
+def test_it_moves_only_while_it_is_enabled(start_node, observer):
+    start_node('mock_panda_node', pace=0.5)
+    reports = observer.listen(contract.DIAGNOSTICS)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    torques = Float64MultiArray(data=[0.0] * 7)
+
+    def mode():
+        commands.publish(torques)
+        return {value.key: value.value for value in reports[-1].status[0].values}['mode'] if reports else ''
+
+    def enable(data):
+        return observer.call(SetBool, contract.ROBOT_ENABLE_SERVICE, SetBool.Request(data=data),
+                             beside=lambda: commands.publish(torques))
+
+    observer.spin(lambda: mode() == 'move')
+    assert enable(False).success
+    observer.spin(lambda: mode() == 'idle')
+    observer.spin(lambda: mode() and 'robot/enable to go on' in reports[-1].status[0].message)
+    assert enable(True).success
+    observer.spin(lambda: mode() == 'move')

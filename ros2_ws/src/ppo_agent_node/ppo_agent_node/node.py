@@ -29,6 +29,7 @@ from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.parameters import ParameterError, declare
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from std_srvs.srv import Trigger
 
@@ -50,6 +51,7 @@ class PpoAgentNode(Callbacks):
 
     def __init__(self) -> None:
         self.node = node = Node('ppo_agent_node')
+        robot = declare_robot(node)
         mode = declare(
             node, 'mode', 'teach', 'teach: learn, then test. test: only test a policy.', choices=('teach', 'test'))
         chosen = preset_for(
@@ -97,7 +99,7 @@ class PpoAgentNode(Callbacks):
         self._training = TrainingTopics(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
         self._background = Background(node)
-        self._plant = GraphPlant(node, self._learner.task.axes, self._background, self._attend)
+        self._plant = GraphPlant(node, self._learner.task.axes, self._background, self._attend, robot)
         self._stop: Stop | None = None
         node.create_service(Trigger, contract.START_SERVICE, self._on_start)
         node.create_service(Trigger, contract.REPEAT_SERVICE, self._on_repeat)

@@ -131,7 +131,7 @@ CONTROLLER_STOP = Service(
     'controller/emergency_stop', _TRIGGER, 'controller', 'disable, until it is reset; wins over `controller/enable`')
 CONTROLLER_RESET = Service(
     'controller/reset_emergency_stop', _TRIGGER, 'controller', 'the emergency stop is over; still disabled')
-ROBOT_ENABLE = Service('robot/enable', _SET_BOOL, 'bridge', 'move the arm, or let it hold itself')
+ROBOT_ENABLE = Service('robot/enable', _SET_BOOL, 'bridge, mock', 'move the arm, or let it hold itself')
 ROBOT_RECOVERY = Service('robot/error_recovery', _TRIGGER, 'bridge, mock', 'leave a reflex stop')
 
 SERVICES = (

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
+from shared_control.robot.spec_file import load_robot
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import as_tested, evaluate
@@ -41,7 +42,8 @@ def test_policy(folder: SessionFolder, episodes: int, physics: str, attend: Call
     """
     attend()
     learner = load_policy(folder.policy)
-    env = SharedControlEnv(LocalPlant(learner.task, physics=physics), as_tested(learner.task))
+    robot = load_robot(folder.ros_parameters('panda_sim_node').get('robot', 'panda'))
+    env = SharedControlEnv(LocalPlant(learner.task, physics=physics, robot=robot), as_tested(learner.task))
     try:
         save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(episodes, attend)), folder.test)
     finally:

@@ -113,4 +113,5 @@ def overrides(settings: Settings, folder: Path, shows_screen: bool) -> dict[str,
         shows_screen: whether the lesson is shown in the terminal.
     """
     session = Session(settings, SessionFolder(folder), shows_screen)
-    return {node.name: node.parameters(session) for node in nodes_of(settings.tutor)}
+    robot = {'robot': settings.robot} if settings.robot else {}
+    return {node.name: {**robot, **node.parameters(session)} for node in nodes_of(settings.tutor)}

@@ -36,6 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         f'{default.episodes})', type=int)
     add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float)
     add('--test-episodes', f'of the policy alone, at the end (default: {default.test_episodes})', type=int)
+    add('--robot', "the robot: a name, or the path of a robot's file (default: as the parameter file has it; panda)")
     add('--seed', f'of ball starts, learner and simulated tutor (default: {default.seed})', type=int)
     add('--screen', 'show the lesson in the terminal; --no-screen: print a line an episode instead',
         action=argparse.BooleanOptionalAction)
@@ -46,8 +47,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--resume', type=Path, metavar='FOLDER',
         help='go on with an earlier session: its learner, its parameters, its folder, and its settings unless other '
-        'options change them; all may be given but --task, --preset, --physics, --seed, --output, --overwrite and '
-             '--params-file')
+        'options change them; all may be given but --task, --preset, --physics, --robot, --seed, --output, --overwrite '
+        'and --params-file')
 
 
 def given_settings(args: argparse.Namespace) -> dict[str, Any]:

@@ -5,12 +5,13 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
+from shared_control.robot.spec_file import load_robot
 from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
 SIMULATED = 'simulated: '
 """Before the profile, where settings.json names a simulated tutor."""
-FIXED = ('task', 'preset', 'physics', 'seed')
+FIXED = ('task', 'preset', 'physics', 'robot', 'seed')
 """What a session that goes on cannot change: the learner was made with it, and in it."""
 
 
@@ -38,6 +39,8 @@ class Settings:
     """Teach for this long at the most, min."""
     test_episodes: int = 20
     """Tests of the policy alone, at the end."""
+    robot: str = ''
+    """The robot, by name or by the path of its file; empty: as the parameter file says."""
     seed: int = 0
     """Seed of ball starts, learner and simulated tutor."""
     page: tuple[str, int] = ('127.0.0.1', 8088)
@@ -57,6 +60,11 @@ class Settings:
                                        ('--profile', self.profile, TUTOR_NAMES)):
             if value not in choices:
                 raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
+        if self.robot:
+            try:
+                load_robot(self.robot)
+            except ValueError as error:
+                raise ValueError(f'--robot: {error}') from error
         for option, number, low, high in (
                 ('--episodes', self.episodes, 0, 100_000), ('--minutes', self.minutes, 0.1, 1440.0),
                 ('--test-episodes', self.test_episodes, 0, math.inf), ('--seed', self.seed, 0, 2**31 - 1),

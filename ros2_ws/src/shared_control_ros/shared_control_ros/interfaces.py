@@ -35,7 +35,7 @@ INTERFACES = {
     'mock_panda_node': Interface(
         publishes=(*ROBOT, contract.BALL, contract.CLOCK),
         subscribes=(contract.EFFORT_COMMANDS, contract.DISTURBANCE),
-        serves=(*SIMULATOR, contract.ERROR_RECOVERY_SERVICE)),
+        serves=(*SIMULATOR, contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE)),
     'panda_bridge_node': Interface(
         publishes=ROBOT, subscribes=(contract.EFFORT_COMMANDS,),
         serves=(contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE)),

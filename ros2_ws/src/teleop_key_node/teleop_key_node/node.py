@@ -14,6 +14,7 @@ from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.parameters import declare
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.task_parameter import declare_task
@@ -36,6 +37,7 @@ class TeleopKeyNode:
 
     def __init__(self) -> None:
         self.node = node = Node('teleop_key_node')
+        robot = declare_robot(node)
         self._task = declare_task(node, 'What is taught: axes and keys.')
         self._device = declare(
             node, 'device', KEYS_DEVICE, 'What the person holds in the hand.', choices=names(DEVICES))
@@ -63,7 +65,7 @@ class TeleopKeyNode:
         device: Device = load(DEVICES, self._device)(self._task, keystroke, self._moment_limit)
         self._sources = Sources(device, self._timeout)
         self._none = np.zeros(len(self._task.axes))
-        self._wrench = base_wrench()
+        self._wrench = base_wrench(robot.base_frame)
         self._publisher = node.create_publisher(
             contract.HUMAN_WRENCH.msg_type, contract.HUMAN_WRENCH.name, contract.HUMAN_WRENCH.qos)
         self._diagnostics = Diagnostics(node, 1.0 / self._rate)

@@ -11,7 +11,6 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
-from shared_control.robot.spec_file import panda
 from shared_control.seeds import episode_seed
 from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
 from shared_control_ros import contract
@@ -19,6 +18,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.parameters import declare
+from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import to_ns
 from shared_control_ros.task_parameter import declare_task
@@ -35,6 +35,7 @@ class SimTutorNode:
 
     def __init__(self) -> None:
         self.node = node = Node('sim_tutor_node')
+        self._robot = declare_robot(node)
         name = declare(
             node, 'profile', 'expert', 'Who it is: a profile, or a family, of which the seed draws one.',
             choices=TUTOR_NAMES)
@@ -75,12 +76,12 @@ class SimTutorNode:
         self._follow_lesson(to_ns(ball.header.stamp))
         if (joints := self._joints.take()) is not None:
             try:
-                self._q = joint_positions(joints, panda())
+                self._q = joint_positions(joints, self._robot)
             except ValueError as error:
                 self._complain(self._joints, str(error))
         if (wrench := self._human.take()) is not None:
             try:
-                self._held = moment_of(wrench, self._axes)
+                self._held = moment_of(wrench, self._axes, self._robot.base_frame)
             except ValueError as error:
                 self._complain(self._human, str(error))
         if self._lesson.phase != 'teach' or self._q is None:
