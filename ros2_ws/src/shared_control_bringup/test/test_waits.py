@@ -67,7 +67,8 @@ def test_a_simulator_without_a_controller_is_said_with_its_newest_warning(domain
 def test_the_newest_warning_of_a_node_is_found_in_its_log(tmp_path):
     node = NodeProcess('torque_ctrl_node', tmp_path / 'none.yaml', tmp_path / 'log')
     assert node.newest_warning() is None
-    node.log.write_text('[WARN] [7.5] [torque_ctrl_node]: too late\n' + 1000 * '[INFO] [8.0] [torque_ctrl_node]: tick\n')
+    ticks = 1000 * '[INFO] [8.0] [torque_ctrl_node]: tick\n'
+    node.log.write_text(f'[WARN] [7.5] [torque_ctrl_node]: too late\n{ticks}')
     assert node.newest_warning() is None, 'long ago'
     with node.log.open('a') as log:
         log.write('[WARN] [9.5] [torque_ctrl_node]: no wrench\n[ERROR] [10.5] [torque_ctrl_node]: stopped\n'
