@@ -20,12 +20,14 @@ from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
+from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
 from shared_control_ros.task_parameter import declare_task
+from shared_control_ros.watchdog import Watchdog
 from shared_control_sim.effort_arm import EffortPanda, Mode
 from std_srvs.srv import SetBool, Trigger
 
@@ -40,6 +42,7 @@ class MockPandaNode:
 
     def __init__(self) -> None:
         self.node = node = Node('mock_panda_node')
+        self._role = claim(node, 'robot')
         robot = declare_robot(node)
         self._jitter = declare(
             node, 'jitter', 0.0005, 'A tick comes up to so much early or late.', unit='s', minimum=0.0, maximum=0.01)
@@ -77,6 +80,7 @@ class MockPandaNode:
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, self._period)
+        self._watchdog = Watchdog()
 
         self._tick = 0
         self._enabled = True
@@ -175,6 +179,7 @@ class MockPandaNode:
         return f'reflex stop: {self._robot.fault}; to go on: {recovery}'
 
     def _report(self) -> None:
+        self._watchdog.feed()
         mode = self._robot.mode
         problems = {}
         if mode is Mode.REFLEX:

@@ -20,12 +20,14 @@ from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
+from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.state_publisher import StatePublisher
 from shared_control_ros.task_parameter import declare_task
+from shared_control_ros.watchdog import Watchdog
 from std_srvs.srv import SetBool, Trigger
 
 from .tick_times import TickTimes
@@ -44,6 +46,7 @@ class PandaSimNode:
 
     def __init__(self) -> None:
         self.node = node = Node('panda_sim_node')
+        self._role = claim(node, 'robot')
         robot = declare_robot(node)
         mode = declare(
             node, 'mode', 'lockstep', 'lockstep: a tick waits for its torque. free_running: a tick a millisecond, '
@@ -75,6 +78,7 @@ class PandaSimNode:
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+        self._watchdog = Watchdog()
 
         self._tick = 0
         # Simulation time starts at the time of the day, at a multiple of the policy period.
@@ -205,6 +209,7 @@ class PandaSimNode:
     # -- output ----------------------------------------------------------------------------------------------------
 
     def _report(self) -> None:
+        self._watchdog.feed()
         simulated = self._tick * CONTROL_PERIOD
         problems = {}
         if self._commands.publisher_count() == 0:

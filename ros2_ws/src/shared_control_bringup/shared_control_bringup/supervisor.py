@@ -1,7 +1,10 @@
 """Keeps the nodes of a session alive and stops them in order."""
 
+import signal
 import time
 from collections.abc import Callable
+
+from shared_control_ros.watchdog import STANDSTILL
 
 from .node_process import UNUSABLE, NodeProcess
 
@@ -92,4 +95,6 @@ class Supervisor:
 
 
 def _meaning(code: int) -> str:
+    if code == -signal.SIGALRM:
+        return f'its loop stood still for {STANDSTILL:.0f} s'
     return f'signal {-code}' if code < 0 else f'exit code {code}'

@@ -15,6 +15,7 @@ from .parameters import ParameterError
 from .processes import adopt_node_environment
 from .readiness import tell_ready
 from .real_time import put_loop_above_other_threads
+from .watchdog import let_go
 
 
 class Stop:
@@ -74,6 +75,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     finally:
         if runnable is not None:
             runnable.close()
+            let_go()
             runnable.node.destroy_node()
         rclpy.try_shutdown()
 

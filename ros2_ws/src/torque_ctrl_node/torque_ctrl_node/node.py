@@ -20,11 +20,13 @@ from shared_control.robot.tray import carrying
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
 from shared_control_ros.task_parameter import declare_task
+from shared_control_ros.watchdog import Watchdog
 from shared_control_ros.wire import WireLayout
 from std_msgs.msg import Float64MultiArray
 
@@ -46,6 +48,7 @@ class TorqueCtrlNode:
 
     def __init__(self) -> None:
         self.node = node = Node('torque_ctrl_node')
+        self._role = claim(node, 'controller')
         robot = declare_robot(node)
         gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(robot.gains))
         task = declare_task(node, 'The task: along which axes moments count, and which tray the robot carries.')
@@ -92,6 +95,7 @@ class TorqueCtrlNode:
             node.get_logger().warning(self._safety.problem)
 
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+        self._watchdog = Watchdog()
         self._background = Background(node)
         self._answered_ns = 0
         self._repetitions = 0
@@ -165,9 +169,11 @@ class TorqueCtrlNode:
         for source in self._awaited:
             while not source.wait_for_stamp(now_ns, 1.0) and self._safety.enabled and not stop.requested:
                 self.node.get_logger().warning(f'waiting for {source.topic_name} (parameter wait_for)')
+                self._watchdog.feed()
                 self._serve()
 
     def _report(self) -> None:
+        self._watchdog.feed()
         now_ns = self._answered_ns
         problems = {}
         for source in (self._human, self._agent):

@@ -1,0 +1,27 @@
+"""Ends a node whose loop stands still: who started it says so and starts it again."""
+
+import signal
+
+STANDSTILL = 10.0
+"""A loop that has not come round for this long does so no more, s."""
+
+
+class Watchdog:
+    """To be fed by a node's loop, once a second or so, from the first round on.
+
+    The system's timer ends the process by SIGALRM, whatever its threads are at: a thread of real-time priority that
+    spins on a lock has kept the loop that held it, and everything else on that core, from running for minutes. So no
+    thread of this process is to do it, and the loop waits for none.
+    """
+
+    def __init__(self, standstill: float = STANDSTILL):
+        self._standstill = standstill
+
+    def feed(self) -> None:
+        """The loop has come round."""
+        signal.setitimer(signal.ITIMER_REAL, self._standstill)
+
+
+def let_go() -> None:
+    """No loop is watched any more: the node leaves."""
+    signal.setitimer(signal.ITIMER_REAL, 0.0)

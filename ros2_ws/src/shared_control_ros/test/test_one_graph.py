@@ -1,0 +1,18 @@
+"""A second robot or controller is refused by name."""
+
+import signal
+
+import pytest
+
+
+@pytest.mark.parametrize(('first', 'second', 'role'), [
+    ('torque_ctrl_node', 'torque_ctrl_node', 'controller'), ('panda_sim_node', 'mock_panda_node', 'robot')])
+def test_a_second_one_is_refused_and_what_was_killed_is_no_hindrance(start_node, first, second, role):
+    there = start_node(first)
+    there.wait_for_log('ready')
+    refused = start_node(second)
+    assert refused.process.wait(30) == 2
+    assert f'/{first} (process {there.process.pid}) is the {role} in ROS domain' in refused.log()
+    assert 'ROS_DOMAIN_ID' in refused.log() and 'Traceback' not in refused.log()
+    there.stop(signal.SIGKILL)
+    start_node(second).wait_for_log('ready')
