@@ -35,6 +35,11 @@ def test_implicit_pd_solves_its_equation(model):
         np.testing.assert_allclose(torque, expected, atol=1e-9)
 
 
+def test_a_moment_along_other_axes_is_refused(model):
+    with pytest.raises(ValueError, match='2 numbers for 1 axes'):
+        ComputedTorqueController(model).torque(panda().home, np.zeros(7), np.zeros(7), np.zeros(2))
+
+
 def test_holds_still_at_the_reference(model):
     torque = ComputedTorqueController(model).torque(
         panda().home, np.zeros(panda().dof), model.gravity(panda().home).copy(), np.zeros(1))
