@@ -22,8 +22,8 @@ PACKAGES = PACKAGE.parent
 FILES = sorted((PACKAGE / 'launch').glob('*.launch.py'))
 LAUNCHING = ast.parse((PACKAGE / 'shared_control_bringup' / 'launching.py').read_text())
 ARGUMENTS = {
-    'tutor': 'keyboard', 'profile': 'expert', 'task': 'balance', 'preset': '', 'episodes': '0', 'minutes': '45',
-    'seed': '0', 'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node'}
+    'tutor': 'keyboard', 'profile': 'expert', 'task': 'balance', 'preset': '', 'physics': 'bullet', 'episodes': '0',
+    'minutes': '45', 'seed': '0', 'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node'}
 HELPERS = {item.name: item for item in LAUNCHING.body if isinstance(item, ast.FunctionDef)}
 
 
