@@ -7,7 +7,6 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
-from shared_control import cli
 
 SOURCES = Path(__file__).parents[1] / 'ros2_ws' / 'src'
 SCRIPTS = sorted(name for setup in SOURCES.glob('*/setup.py')
@@ -15,27 +14,53 @@ SCRIPTS = sorted(name for setup in SOURCES.glob('*/setup.py')
 SUBCOMMANDS = sorted(entry_point.name for entry_point in entry_points(group='shared_control.commands'))
 
 
+HEAVY = {'numpy', 'rclpy', 'pinocchio', 'torch', 'stable_baselines3', 'gymnasium', 'pybullet', 'mujoco', 'pandas',
+         'pyarrow', 'matplotlib', 'scipy', 'mcap', 'rosbags', 'pydantic', 'nicegui', 'fastapi', 'jinja2'}
+"""What no `--help` waits for: it takes 0.1 s (numpy) to 2 s (torch) to import."""
+
+
 @pytest.fixture(scope='module')
 def helps():
-    """What each console script says to ``--help``; all are started at once, since importing torch takes a while."""
+    """What each command answers to ``--help``, and the modules that it imported for that."""
     folder = Path(sys.executable).parent
-    running = {name: subprocess.Popen([folder / name, '--help'], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                      stderr=subprocess.PIPE, text=True) for name in SCRIPTS}
-    return {name: (*process.communicate(timeout=120), process.returncode) for name, process in running.items()}
+    commands = {name: [name] for name in SCRIPTS} | {name: ['shared-control', name] for name in SUBCOMMANDS}
+    found = {}
+    for name, (script, *arguments) in commands.items():
+        done = subprocess.run([sys.executable, '-X', 'importtime', folder / script, *arguments, '--help'],
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+        imports = {line.rpartition('|')[2].strip() for line in done.stderr.splitlines() if '|' in line}
+        found[name] = done.stdout, done.stderr, done.returncode, imports
+    return found
 
 
 @pytest.mark.parametrize('name', SCRIPTS)
 def test_a_script_explains_itself_and_does_nothing_else(helps, name):
-    output, errors, code = helps[name]
+    output, errors, code, _ = helps[name]
     assert code == 0 and 'Traceback' not in errors
     expected = '--ros-args' if name.endswith('_node') else 'usage:'
     assert expected in output and len(output.splitlines()) >= 3
 
 
 @pytest.mark.parametrize('name', SUBCOMMANDS)
-def test_a_subcommand_explains_itself(name, monkeypatch, capsys):
-    monkeypatch.setattr(sys, 'argv', ['shared-control', name, '--help'])
-    with pytest.raises(SystemExit) as end:
-        cli.main()
-    assert end.value.code == 0
-    assert f'usage: shared-control {name}' in capsys.readouterr().out
+def test_a_subcommand_explains_itself(helps, name):
+    output, _, code, _ = helps[name]
+    assert code == 0
+    assert f'usage: shared-control {name}' in output
+
+
+@pytest.mark.parametrize('name', [*SCRIPTS, *SUBCOMMANDS])
+def test_help_waits_for_nothing_heavy(helps, name):
+    imports = helps[name][-1]
+    assert 'argparse' in imports or 'ast' in imports, 'the list of imports was not understood'
+    assert not HEAVY & {module.partition('.')[0] for module in imports}
+
+
+def test_who_does_not_learn_loads_no_torch():
+    modules = ('shared_control_bringup.session', 'shared_control_bringup.recorder.node', 'panda_sim_node.node',
+               'teleop_key_node.node', 'teach_page_node.node', 'teach_page_node.recording',
+               'shared_control_nodes.tutor.node', 'shared_control_records.session.report',
+               'shared_control_records.study_report.report', 'shared_control_records.export.lerobot',
+               'shared_control_records.validation.run')
+    loaded = subprocess.run([sys.executable, '-c', f'import {", ".join(modules)}, sys; print(*sys.modules)'],
+                            capture_output=True, text=True, check=True).stdout.split()
+    assert {*modules} <= {*loaded} and 'torch' not in loaded

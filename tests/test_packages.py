@@ -89,7 +89,7 @@ def test_ros2_run_finds_the_package_and_its_executable(package):
     assert config.count(f'=$base/lib/{package.name}\n') == 2
     if package.name.endswith('_node'):
         scripts = setup_arguments(package)['entry_points']['console_scripts']
-        assert f'{package.name} = {package.name}.node:main' in scripts
+        assert f'{package.name} = {package.name}.__main__:main' in scripts
 
 
 def test_all_that_is_imported_is_depended_upon(package):

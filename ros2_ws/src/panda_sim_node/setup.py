@@ -19,7 +19,7 @@ setup(
     description='Simulator of the Panda with tray and ball as a ROS 2 node.',
     license='Apache-2.0',
     entry_points={'console_scripts': [
-        'panda_sim_node = panda_sim_node.node:main',
-        'mock_panda_node = panda_sim_node.mock:main',
+        'panda_sim_node = panda_sim_node.__main__:main',
+        'mock_panda_node = panda_sim_node.mock.__main__:main',
     ]},
 )

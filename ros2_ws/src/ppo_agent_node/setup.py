@@ -18,5 +18,5 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='PPO agent that learns on the running graph and publishes its moment M_yai.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['ppo_agent_node = ppo_agent_node.node:main']},
+    entry_points={'console_scripts': ['ppo_agent_node = ppo_agent_node.__main__:main']},
 )

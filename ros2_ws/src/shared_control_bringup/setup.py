@@ -27,10 +27,10 @@ setup(
     description='Starts the whole graph: parameter file, launch files, sessions.',
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['session_recorder_node = shared_control_bringup.recorder.node:main'],
+        'console_scripts': ['session_recorder_node = shared_control_bringup.recorder.__main__:main'],
         'shared_control.commands': [
             'doctor = shared_control_bringup.doctor.command:add_command',
-            'session = shared_control_bringup.session:add_command',
+            'session = shared_control_bringup.command:add_command',
         ],
     },
 )

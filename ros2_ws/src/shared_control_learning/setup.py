@@ -23,8 +23,8 @@ setup(
     license='Apache-2.0',
     entry_points={
         'shared_control.commands': [
-            'train = shared_control_learning.train_command:add_command',
-            'tutors = shared_control_learning.tutors_command:add_command',
+            'train = shared_control_learning.commands:add_train',
+            'tutors = shared_control_learning.commands:add_tutors',
         ],
         'shared_control.learners': [
             'coached = shared_control_learning.presets:COACHED',

@@ -19,8 +19,8 @@ setup(
     description='Light nodes of the graph: the simulated tutor, the views, the bridge to a real Panda.',
     license='Apache-2.0',
     entry_points={'console_scripts': [
-        'sim_tutor_node = shared_control_nodes.tutor.node:main',
-        'robot_view_node = shared_control_nodes.view.node:main',
-        'panda_bridge_node = shared_control_nodes.bridge.node:main',
+        'sim_tutor_node = shared_control_nodes.tutor.__main__:main',
+        'robot_view_node = shared_control_nodes.view.__main__:main',
+        'panda_bridge_node = shared_control_nodes.bridge.__main__:main',
     ]},
 )

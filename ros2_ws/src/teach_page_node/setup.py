@@ -23,7 +23,7 @@ setup(
     description='A page to teach from: the arm in 3D, the keys, the lesson; and the replay of a recorded session.',
     license='Apache-2.0',
     entry_points={
-        'console_scripts': ['teach_page_node = teach_page_node.node:main'],
+        'console_scripts': ['teach_page_node = teach_page_node.__main__:main'],
         'shared_control.commands': ['replay = teach_page_node.replay:add_command'],
     },
 )

@@ -18,5 +18,5 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='Keyboard teleoperation: keys to the human moment M_yh, with a teaching screen in the terminal.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['teleop_key_node = teleop_key_node.node:main']},
+    entry_points={'console_scripts': ['teleop_key_node = teleop_key_node.__main__:main']},
 )

@@ -18,5 +18,5 @@ setup(
     maintainer_email='maintainers@shared-control.invalid',
     description='1 kHz computed-torque controller that sums the moments of human and agent.',
     license='Apache-2.0',
-    entry_points={'console_scripts': ['torque_ctrl_node = torque_ctrl_node.node:main']},
+    entry_points={'console_scripts': ['torque_ctrl_node = torque_ctrl_node.__main__:main']},
 )

@@ -17,17 +17,10 @@ from . import parameters as ros_parameters
 from .graph import overrides
 from .interrupts import Interrupts
 from .neighbours import Neighbours
-from .options import add_options, given_settings, refuse_options_of_new_sessions
+from .options import given_settings, refuse_options_of_new_sessions
 from .page import Page
 from .settings import Settings
 from .teaching import End, teach
-
-
-def add_command(commands: argparse._SubParsersAction) -> None:
-    """Add ``session`` to the ``shared-control`` command."""
-    parser = commands.add_parser('session', help='teach the robot on the running graph', description=__doc__)
-    add_options(parser)
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:

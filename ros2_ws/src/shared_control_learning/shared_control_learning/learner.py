@@ -1,13 +1,15 @@
 """What a learner is to everything else: the learn loop, the agent's node, policy files, tests."""
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-import torch
 from shared_control.tasks.task import Task
 
 from .episode import Episode
+
+if TYPE_CHECKING:
+    import torch
 
 
 class Learner(Protocol):
@@ -38,10 +40,10 @@ class Learner(Protocol):
     def learn_from(self, episode: Episode) -> dict[str, float]:
         """Learn from a finished episode; gives figures by name, for a log."""
 
-    def tensors(self) -> dict[str, torch.Tensor]:
+    def tensors(self) -> 'dict[str, torch.Tensor]':
         """All that it has learned and needs to go on, by name."""
 
-    def restore(self, tensors: Mapping[str, torch.Tensor]) -> None:
+    def restore(self, tensors: 'Mapping[str, torch.Tensor]') -> None:
         """Become the learner that gave these tensors.
 
         Raises:

@@ -3,8 +3,6 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import torch
-
 
 @contextmanager
 def one_thread() -> Iterator[None]:
@@ -12,6 +10,7 @@ def one_thread() -> Iterator[None]:
 
     Sums that are split over threads are rounded otherwise, so that a seed would give another policy on another machine.
     """
+    import torch  # late: tests of a policy and reports of them, which share this module's users, need none
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:

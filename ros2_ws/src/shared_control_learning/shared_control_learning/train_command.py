@@ -6,10 +6,9 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.run_folder import RunFolder
 from shared_control.teaching.picture import can_teach
-from shared_control.teaching.tutors import TUTOR_NAMES, tutor_named
+from shared_control.teaching.tutors import tutor_named
 from tqdm import tqdm
 
 from .callbacks import Callbacks
@@ -18,35 +17,6 @@ from .episode_table import TABLE_NAME
 from .policy_file import POLICY_NAME
 from .presets import Preset, preset_for
 from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, read_run, train
-
-
-def add_command(commands: argparse._SubParsersAction) -> None:
-    """Add ``train`` to the command line."""
-    parser = commands.add_parser(
-        'train', help='teach a policy in this process, by a simulated tutor or by nobody',
-        description='Teaches a policy headless and as fast as the machine can, with a simulated tutor or none; after '
-        'each episode the policy is tested alone. The folder gets policy.safetensors, episodes.csv, run.json and '
-        'TensorBoard logs.')
-    parser.add_argument('--preset', choices=names(LEARNERS), default='', help='how it is learned (default: as the '
-                        'task is; coached)')
-    parser.add_argument('--task', choices=names(TASKS), default='', help='what is learned (default: what the preset '
-                        'was made for; balance)')
-    parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='(default: %(default)s)')
-    parser.add_argument('--tutor', choices=(*TUTOR_NAMES, 'none'), help='simulated tutor (default: expert; none for a '
-                        'preset that nobody teaches, and for a task that tutors do not know)')
-    parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
-    parser.add_argument('--seed', type=int, default=0, help='of everything random (default: 0)')
-    parser.add_argument('--episodes', type=int, default=20, help='at most so many (default: 20)')
-    parser.add_argument('--until-skilled', action='store_true', help='stop when two tests in a row were passed')
-    parser.add_argument('--evaluate-every', type=int, default=1, metavar='N', help='test after every Nth episode; 0: '
-                        'never (default: 1)')
-    parser.add_argument('--output', type=Path, default=Path('out/train'), help='folder (default: out/train)')
-    choice = parser.add_mutually_exclusive_group()
-    choice.add_argument('--resume', action='store_true', help='go on with the run in the folder')
-    choice.add_argument('--overwrite', action='store_true', help='begin anew in a folder that holds a run: remove '
-                        'what that run wrote, and nothing else')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the result there as well; - for the output')
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -3,40 +3,25 @@
 import argparse
 import json
 import sys
-from pathlib import Path
 from statistics import mean, median
 from typing import Any
 
 import numpy as np
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
-from shared_control.plugins import TASKS, load, names
+from shared_control.plugins import TASKS, load
 from shared_control.rates import POLICY_PERIOD
 from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task, settled
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.profiles import PROFILES
-from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
+from shared_control.teaching.tutors import make_tutor, tutor_named
 from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
 
 from .callbacks import Callbacks
 from .episode import Episode
 from .learn import run_episode
-
-
-def add_command(commands: argparse._SubParsersAction) -> None:
-    """Add ``tutors`` to the command line."""
-    parser = commands.add_parser(
-        'tutors', help='simulated tutors: families, sources, and how well each does the task alone',
-        description='Every individual has one episode with a robot that gives no moment of its own. All tutors are '
-        'simulated. Families marked "tuning" may be used to choose settings; results are of those held out.')
-    parser.add_argument('tutors', nargs='*', metavar='NAME', default=list(TUTOR_NAMES),
-                        help=f'profiles and families (default: all): {", ".join(TUTOR_NAMES)}')
-    parser.add_argument('--individuals', type=int, default=12, help='of each (default: %(default)s)')
-    parser.add_argument('--task', choices=names(TASKS), default='balance')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the figures there as well')
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:

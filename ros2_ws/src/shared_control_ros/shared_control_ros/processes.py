@@ -31,7 +31,7 @@ def node_module(name: str) -> str:
         ValueError: no installed package has it.
     """
     for script in entry_points(group='console_scripts', name=name):
-        return script.module
+        return script.module.removesuffix('.__main__')
     raise ValueError(f'no node {name!r} is installed')
 
 

@@ -49,10 +49,6 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     """
     if args is None:
         args = sys.argv
-    if '--help' in args or '-h' in args:
-        print((sys.modules[make.__module__].__doc__ or '').strip())
-        print('\nParameters: --ros-args -p NAME:=VALUE or --ros-args --params-file FILE; the README lists them.')
-        return 0
     adopt_node_environment()  # a node that was started by hand keeps to this machine, too
     rclpy.init(args=[*args, *_log_arguments()], signal_handler_options=SignalHandlerOptions.NO)
     stop = Stop()

@@ -8,12 +8,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from enum import Enum
-from typing import get_args
-
-import numpy as np
+from typing import TYPE_CHECKING, get_args
 
 from .individual import Habit, Individual, LawName
 from .profiles import EXPERT, TutorProfile
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 class Use(Enum):
@@ -35,11 +36,12 @@ class Family:
     use: Use
     about: str
     source: str
-    draw: Callable[[np.random.Generator], Individual | TutorProfile]
+    draw: Callable[['np.random.Generator'], Individual | TutorProfile]
 
 
-def spread_around(profile: TutorProfile, spread: float, random: np.random.Generator) -> TutorProfile:
+def spread_around(profile: TutorProfile, spread: float, random: 'np.random.Generator') -> TutorProfile:
     """An individual around ``profile``: each number times ``exp(spread z)``, z standard normal."""
+    import numpy as np  # late: the names of families stand in options, whose `--help` need not wait for it
     numbers = [f.name for f in fields(profile) if type(getattr(profile, f.name)) is float]
     factors = np.exp(spread * random.standard_normal(len(numbers)))
     return replace(profile, **{name: getattr(profile, name) * float(factor)
@@ -48,11 +50,11 @@ def spread_around(profile: TutorProfile, spread: float, random: np.random.Genera
 
 def _people(family: str, law: LawName, stiffness: tuple[float, float], lead: tuple[float, float],
             dead_band: tuple[float, float] = (0.015, 0.03), rhythm: tuple[float, float] = (0.25, 0.5),
-            ) -> Callable[[np.random.Generator], Individual]:
+            ) -> Callable[['np.random.Generator'], Individual]:
     """Draws of a family: ranges are of uniform distributions; the delay's median is log-normal (0.3 s, sigma 0.25)."""
     habits = get_args(Habit)
 
-    def draw(random: np.random.Generator) -> Individual:
+    def draw(random: 'np.random.Generator') -> Individual:
         def between(low: float, high: float) -> float:
             return float(random.uniform(low, high))
 
@@ -104,6 +106,7 @@ def draw_individual(family: str, seed: int) -> Individual | TutorProfile:
     Raises:
         ValueError: there is no such family; the message lists the names.
     """
+    import numpy as np
     if family not in FAMILIES:
         raise ValueError(f'no family of tutors {family!r}; there are {", ".join(FAMILIES)}')
     return FAMILIES[family].draw(np.random.default_rng((seed, _STREAM)))

@@ -1,0 +1,12 @@
+"""The command ``mock_panda_node``."""
+
+from shared_control_ros.node_command import run_node
+
+
+def main() -> int:
+    """Entry point."""
+    return run_node('panda_sim_node.mock.node')
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())
