@@ -1,4 +1,4 @@
-"""The options of ``shared-control train`` and ``tutors``. What they do is imported when it is done: torch takes seconds."""
+"""The options of ``shared-control train`` and ``tutors``. What they do is imported late: torch takes seconds."""
 
 import argparse
 from pathlib import Path
