@@ -31,7 +31,7 @@ setup(
             'validate = shared_control_records.validation.command:add_command',
             'report = shared_control_records.report_command:add_command',
             'study = shared_control_records.study.command:add_command',
-            'recover = shared_control_records.bag.command:add_command',
+            'recover = shared_control_records.recover_command:add_command',
             'export = shared_control_records.export.command:add_command',
         ],
     },

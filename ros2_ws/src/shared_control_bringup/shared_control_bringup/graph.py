@@ -1,4 +1,4 @@
-"""The nodes of a session: who takes part, in which order they start, and what its settings give them.
+"""The nodes of a session: who takes part, who starts after whom, and what its settings give them.
 
 ``shared-control session``, the launch files and the tests of ``docker/compose.yaml`` all go by this table.
 """
@@ -50,6 +50,8 @@ class SessionNode:
     role: Role = Role.MEMBER
     tutor: str = ''
     """Takes part with this tutor only; empty: with any."""
+    after: str = ''
+    """Starts when this node is ready; empty: at once."""
 
 
 BESIDE_A_SIMULATOR = {'enabled': True}
@@ -73,7 +75,7 @@ NODES = (
         **_of_the_task(s.settings), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
     SessionNode('panda_sim_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'physics': s.settings.physics, 'seed': s.settings.seed},
-        Role.CONTROL_LOOP),
+        Role.CONTROL_LOOP, after='session_recorder_node'),
     SessionNode('teleop_key_node', lambda s: {
         'task': _of_the_task(s.settings)['task'],
         'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
@@ -88,14 +90,15 @@ NODES = (
         'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',
         'output': str(s.folder.learner)}, Role.LEADER),
 )
-"""In the order in which they start: who listens is there before who speaks."""
+"""In the order in which they start, side by side: all wait for the simulator, which begins the time, and this for the
+recorder, which is to miss none of it."""
 OTHERS = ('mock_panda_node', 'panda_bridge_node', 'robot_view_node')
 """Nodes that no session starts."""
 ALL_NODES = (*(node.name for node in NODES), *OTHERS)
 
 
 def nodes_of(tutor: str) -> list[SessionNode]:
-    """Those that take part in a session with this tutor, in the order in which they start."""
+    """Those that take part in a session with this tutor."""
     return [node for node in NODES if node.tutor in ('', tutor)]
 
 

@@ -37,12 +37,14 @@ class NodeProcess:
         in_control_loop: give it the core of the control loop.
         in_real_time: give the control loop real-time priority; an unpaced one would take its core from all others.
         environment: variables that this node alone is given.
+        after: name of the node that must be ready before this one starts.
     """
 
     def __init__(self, name: str, parameters: Path, log: Path, *, in_foreground: bool = False,
                  in_control_loop: bool = False, in_real_time: bool = False,
-                 environment: Mapping[str, str] | None = None):
+                 environment: Mapping[str, str] | None = None, after: str = ''):
         self.name = name
+        self.after = after
         self._in_control_loop = in_control_loop
         self._in_real_time = in_real_time
         self._environment = dict(environment or {})
@@ -56,10 +58,16 @@ class NodeProcess:
         self._process: subprocess.Popen | None = None
         self._ready_pipe: int | None = None
 
-    def start(self) -> None:
-        """Start it, or start it again."""
+    def start(self, confined: bool = True) -> None:
+        """Start it, or start it again.
+
+        Args:
+            confined: keep it off the core of the control loop, where nothing runs yet when a session begins: two cores
+                import what a node needs sooner than one. Otherwise :meth:`confine` comes later.
+        """
         self.starts += 1
         self.started = time.monotonic()
+        self._starts_confined = confined
         self._close_ready_pipe()
         self._ready_pipe, theirs = os.pipe()
         environment = {**node_environment(), **self._environment, READY_FD: str(theirs)}
@@ -90,10 +98,23 @@ class NodeProcess:
             if others and self._in_real_time:
                 with suppress(PermissionError):
                     os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(REAL_TIME_PRIORITY))
-        elif others:
-            os.sched_setaffinity(0, others)
-        else:
+        elif not others:
             os.nice(NICENESS)
+        elif self._starts_confined:
+            os.sched_setaffinity(0, others)
+
+    def confine(self) -> None:
+        """Leave the core of the control loop to it from now on."""
+        *others, _ = sorted(os.sched_getaffinity(0))
+        if self._in_control_loop or not others or self.exit_code() is not None:
+            return
+        confined: set[str] = set()
+        # Threads that begin meanwhile have what their makers had: look until there is none that was not seen.
+        while new := {path.name for path in Path(f'/proc/{self.pid}/task').glob('*')} - confined:
+            for thread in new:
+                with suppress(ProcessLookupError):
+                    os.sched_setaffinity(int(thread), others)
+            confined |= new
 
     @property
     def is_starting(self) -> bool:

@@ -9,8 +9,9 @@ from shared_control_ros.watchdog import STANDSTILL
 from .node_process import UNUSABLE, NodeProcess
 
 MAX_RESTARTS_A_MINUTE = 5
-READY_SECONDS = 10.0
-ATTEND_SECONDS = 0.1
+READY_SECONDS = 60.0
+"""Until the first ready or not, all nodes together, s: a busy machine takes long to import torch."""
+START_POLL_SECONDS = 0.02
 STOP_SECONDS = 10.0
 
 
@@ -26,7 +27,7 @@ class Supervisor:
     """Runs nodes until one of them, the leader, is done.
 
     Args:
-        nodes: in the order in which they start; they stop in the reverse order.
+        nodes: they stop in the reverse order.
         leader: the node whose clean exit ends the session.
         say: told of every restart.
         stopper: the node whose clean exit stops the session.
@@ -43,14 +44,23 @@ class Supervisor:
         self._deaths: dict[str, list[float]] = {}
 
     def start(self) -> None:
-        """Start the nodes, one after the other is ready: who listens is there before who speaks."""
-        for node in self._nodes:
+        """Start the nodes side by side, but for those that wait for another, and wait until all are ready."""
+        deadline = time.monotonic() + READY_SECONDS
+        waiting = list(self._nodes)
+        while waiting or any(node.is_starting for node in self._nodes):
             self._attend()
-            node.start()
-            deadline = time.monotonic() + READY_SECONDS
-            while node.is_starting and time.monotonic() < deadline:
-                node.wait_ready(ATTEND_SECONDS)
-                self._attend()
+            late = time.monotonic() >= deadline
+            unready = {node.name for node in self._nodes if node in waiting or node.is_starting}
+            for node in [node for node in waiting if late or node.after not in unready]:
+                node.start(confined=False)
+                waiting.remove(node)
+            if late:
+                break
+            for node in self._nodes:
+                node.wait_ready(0.0)
+            time.sleep(START_POLL_SECONDS)
+        for node in self._nodes:
+            node.confine()
 
     def poll(self) -> bool:
         """Look after the nodes once; False when the leader has finished.

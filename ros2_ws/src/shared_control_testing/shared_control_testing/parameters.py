@@ -22,7 +22,7 @@ def declared_parameters(node: str) -> dict[str, object]:
         Default by name; None where the default is no literal.
     """
     package, *rest = node_module(node).split('.')
-    folder = (PACKAGES / package / package).joinpath(*rest).parent
+    folder = (PACKAGES / package / package).joinpath(*rest)
     texts = [path.read_text() for path in folder.glob('*.py')]
     shared = {name for text in texts for name in re.findall(r'shared_control_ros\.(\w+_parameter) import', text)}
     texts += [(SHARED / f'{name}.py').read_text() for name in shared]

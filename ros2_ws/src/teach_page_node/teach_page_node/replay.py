@@ -1,7 +1,6 @@
 """``shared-control replay``: a recorded session on the page, with a time slider and speed. Needs no ROS."""
 
 import argparse
-import asyncio
 from pathlib import Path
 
 from shared_control_ros.host_and_port import host_and_port
@@ -24,7 +23,9 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Serve the replay until Ctrl-C; the exit code."""
-    # Imported late: the other commands need neither web server nor bag reader.
+    # Imported late: `--help` and the other commands need neither web server nor bag reader.
+    import asyncio
+
     from shared_control_records.bag.reader import read_bag
     from shared_control_records.session.folder import SessionFolder
 

@@ -13,7 +13,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Recover a bag; the exit code."""
-    from .repair import recover
+    from .bag import recover  # late: `--help` need not wait for what reads bags
     recovered = recover(args.bag)
     for file in recovered:
         print(file)
