@@ -111,11 +111,11 @@ class _Graph:
 
 
 def measure() -> dict[str, Any]:
-    """``start``: ``help_cpu_s`` by command and the largest of them; ``session_s``, medians over the rounds."""
+    """``help_cpu_s`` by command and the largest of them; ``session_s``, medians over the rounds."""
     helps = help_cpu_s()
     rounds = [session_s() for _ in range(ROUNDS)]
     seconds = {name: [found[name] for found in rounds] for name in rounds[-1]}
-    return {'start': {'help_cpu_s_max': max(helps.values()), 'help_cpu_s': helps,
+    return {'help_cpu_s_max': max(helps.values()), 'help_cpu_s': helps,
             'session_s': {name: {'median': round(statistics.median(values), 2), 'min_max': [min(values), max(values)]}
                           for name, values in seconds.items()},
-            'rounds': rounds}}
+            'rounds': rounds}

@@ -13,7 +13,7 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_learning', 'shared_control_records', 'shared_control_ros', 'rclpy',
-        'numpy', 'rosbags', 'mcap', 'pytest', 'pyyaml',
+        'numpy', 'rosbags', 'mcap', 'zstandard', 'pytest', 'pyyaml',
     ],
     entry_points={'pytest11': ['shared_control = shared_control_testing.plugin']},
     extras_require={'test': ['pytest']},

@@ -22,7 +22,7 @@ class Seen:
     starting: tuple[str, ...] = ()
     """Nodes that have not said that they are ready for longer than they should."""
     phase: str | None = None
-    """Of the agent; None: it has said nothing yet."""
+    """What the agent is at; None: it has said nothing yet."""
     phase_age: float = 0.0
     """Since the phase began, or the session, s."""
     tick_age: float = 0.0
