@@ -5,7 +5,6 @@ from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
-from shared_control.robot.spec_file import load_robot
 from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
@@ -61,6 +60,7 @@ class Settings:
             if value not in choices:
                 raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
         if self.robot:
+            from shared_control.robot.spec_file import load_robot  # late: `--help` need not wait for numpy
             try:
                 load_robot(self.robot)
             except ValueError as error:
