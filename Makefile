@@ -7,12 +7,15 @@ SRC := ros2_ws/src
 MINUTES := 60
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test lint bench faults soak weight count colcon clean
+.PHONY: help setup demo session test coverage lint docs wheel bench faults soak weight count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
 	@echo 'make session  teach the robot yourself, from this terminal'
 	@echo 'make test     all tests'
+	@echo 'make coverage all tests, and which lines they ran; ARGS=PATH for a part of them'
+	@echo 'make docs     the documentation as a site (out/docs/index.html)'
+	@echo 'make wheel    sdist and wheel (dist/), each installed and tried in an empty environment'
 	@echo 'make lint     ruff, mypy, and who may import whom'
 	@echo 'make bench    measurements (out/bench.json)'
 	@echo 'make faults   faults at random moments of live sessions, and what must hold in spite of them (out/faults.json)'
@@ -45,6 +48,18 @@ test: setup
 	$(BIN)/python -m pytest -m 'not alone' --numprocesses 2 --dist loadscope --no-loadscope-reorder || failed=1; \
 	$(BIN)/python -m pytest -m alone || failed=1; \
 	exit $$failed
+
+coverage: setup
+	rm -f .coverage .coverage.*
+	$(BIN)/python -m pytest -q --cov $(ARGS)
+	$(BIN)/coverage report --skip-covered --sort=cover
+
+docs: setup
+	$(BIN)/python -m sphinx -b html --fail-on-warning --keep-going --quiet -d out/doctrees docs out/docs
+	@echo 'out/docs/index.html'
+
+wheel: setup
+	$(BIN)/python tools/wheel.py --output dist
 
 lint: setup
 	$(BIN)/ruff check .

@@ -29,6 +29,8 @@ EXTRAS = {
 packages, and of all these extras."""
 NOT_INSTALLED = ('shared_control_testing',)
 """For the tests of the workspace alone."""
+DOCS = ('sphinx', 'myst-parser', 'furo', 'sphinxcontrib-mermaid')
+"""What builds the documentation's site: for developers, and in no other extra."""
 OF_ROS = {'rclpy': ('ros-jazzy-rclpy[fastrtps]', 'ros-jazzy-common-interfaces', 'ros-rmw-fastrtps-cpp')}
 """Distributions on PyPI of what ROS calls a package."""
 
@@ -90,6 +92,7 @@ setup(
     install_requires=_requirements(PACKAGES, BASE),
     extras_require={
         **{extra: _requirements(PACKAGES, names, (extra,)) for extra, names in EXTRAS.items()},
+        'docs': [_pins()[name] for name in DOCS],
         'all': _requirements(PACKAGES, PACKAGES, EXTRAS)},
     entry_points=_entry_points(PACKAGES),
 )

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 from shared_control.contract_tables import services, topics
 from shared_control_ros.processes import node_environment
 
@@ -63,7 +64,25 @@ def test_ros_commands_name_what_exists(page):
             assert re.search(rf"DeclareLaunchArgument\(\s*'{argument}'", source), argument
 
 
-def test_the_python_of_the_readme_runs():
-    code = re.findall(r'```python\n(.*?)```', (ROOT / 'README.md').read_text(), re.DOTALL)
+@pytest.mark.parametrize(('page', 'says'), [('README.md', ''), ('docs/tutorial/first_policy.md', 'of 20 alone')])
+def test_the_python_of_a_page_runs(page, says, tmp_path):
+    code = re.findall(r'```python\n(.*?)```', (ROOT / page).read_text(), re.DOTALL)
     assert len(code) == 1
-    subprocess.run([sys.executable, '-c', code[0]], check=True, timeout=300)
+    done = subprocess.run([sys.executable, '-c', code[0]], check=True, timeout=300, cwd=tmp_path, capture_output=True,
+                          text=True)
+    assert says in done.stdout
+
+
+def test_the_site_builds_without_a_warning(tmp_path):
+    done = subprocess.run([sys.executable, '-m', 'sphinx', '-b', 'html', '--fail-on-warning', '--keep-going', '--quiet',
+                           ROOT / 'docs', tmp_path], capture_output=True, text=True, timeout=600, check=False)
+    assert done.returncode == 0, done.stderr
+    assert 'panda_sim_node' in (tmp_path / 'reference' / 'generated' / 'parameters.html').read_text()
+
+
+def test_the_workflow_runs_what_ci_runs_and_targets_that_exist():
+    text = (ROOT / '.github' / 'workflows' / 'ci.yml').read_text()
+    steps = [step.get('run', '') for job in yaml.safe_load(text)['jobs'].values() for step in job['steps']]
+    assert '.ci/run' in steps
+    targets = re.findall(r'^([a-z]+):', (ROOT / 'Makefile').read_text(), re.MULTILINE)
+    assert set(re.findall(r'make ([a-z]+)$', '\n'.join(steps), re.MULTILINE)) <= set(targets)

@@ -1,0 +1,76 @@
+"""Pages of reference that are made of the code: commands, parameters of nodes, public modules.
+
+They are written whenever the site is built, and not kept.
+"""
+
+import argparse
+import importlib
+import inspect
+import os
+import pkgutil
+import tomllib
+from importlib.metadata import distribution, entry_points
+from pathlib import Path
+
+from shared_control_testing.parameters import declarations
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ('shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records')
+"""Packages whose modules people import."""
+
+
+def version() -> str:
+    """The version of the distribution."""
+    return tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']['version']
+
+
+def write(folder: Path) -> None:
+    """Write all of them into ``folder``; a page that has not changed is left alone, so that it is not built again."""
+    folder.mkdir(exist_ok=True)
+    pages = {'commands': commands(), 'parameters': parameters(), **{f'api_{name}': api(name) for name in PACKAGES}}
+    for name, text in pages.items():
+        path = folder / f'{name}.md'
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
+
+
+def commands() -> str:
+    """The help of ``shared-control`` and its subcommands, as argparse prints it."""
+    os.environ['COLUMNS'] = '100'
+    text = '# Commands\n\n`shared-control COMMAND`; printed by argparse.\n'
+    for entry_point in sorted(entry_points(group='shared_control.commands'), key=lambda entry: entry.name):
+        parser = argparse.ArgumentParser(prog='shared-control')
+        subparsers = parser.add_subparsers()
+        entry_point.load()(subparsers)
+        text += f'\n## {entry_point.name}\n\n```text\n{subparsers.choices[entry_point.name].format_help()}```\n'
+    return text
+
+
+def parameters() -> str:
+    """The parameters that each node declares, from its sources."""
+    text = ('# Parameters of nodes\n\nAs the sources declare them; no node is started for this. `ros2 param describe` '
+            'says the same of a node that runs. Beside these, every node has the parameters of rclpy, such as '
+            '`use_sim_time`.\n')
+    scripts = distribution('shared-control').entry_points.select(group='console_scripts')
+    nodes = sorted(script.name for script in scripts if script.name.endswith('_node'))
+    for node in nodes:
+        rows = ''.join(f'| `{found.name}` | `{found.default}` | {found.description} |\n'
+                       for found in declarations(node))
+        text += f'\n## {node}\n\n' + (f'| parameter | default | what |\n|---|---|---|\n{rows}' if rows else 'None.\n')
+    return text
+
+
+def api(package: str) -> str:
+    """The public modules of a package, by autodoc."""
+    module = importlib.import_module(package)
+    found = [info.name for info in pkgutil.walk_packages(module.__path__, f'{package}.')]
+    public = [name for name in found if not any(part.startswith('_') for part in name.split('.'))]
+    text = f'# {package}\n\n{(inspect.getdoc(module) or "").splitlines()[0]}\n'
+    for name in public:
+        options = ':members:\n:undoc-members:\n' if not _is_package(name) else ''
+        text += f'\n## {name}\n\n```{{automodule}} {name}\n{options}```\n'
+    return text
+
+
+def _is_package(name: str) -> bool:
+    return hasattr(importlib.import_module(name), '__path__')

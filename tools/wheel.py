@@ -1,0 +1,97 @@
+"""Builds sdist and wheel, installs each in an empty environment, and runs from there what people run.
+
+    python tools/wheel.py --output dist                     # with this Python
+    python tools/wheel.py --output dist --python python3.12
+
+The wheel is built from the sdist, so that a file which the sdist lacks is missed here and not by somebody else. From
+the wheel with all extras every console script explains itself and the Python of the tutorial teaches a policy; the
+sdist alone is installed with what the core needs.
+"""
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+TUTORIAL = ROOT / 'docs' / 'tutorial' / 'first_policy.md'
+SOURCES = ('setup.py', 'pyproject.toml', 'requirements.txt', 'MANIFEST.in', 'README.md', 'LICENSE', 'ros2_ws/src')
+BUILD = ('import setuptools.build_meta as build, sys; '
+         'print(getattr(build, "build_" + sys.argv[1])(sys.argv[2]))')
+
+
+def run(*command: object, cwd: Path) -> str:
+    """Run a command in a folder, with no variable that leads back to the sources; what it prints.
+
+    Raises:
+        SystemExit: it failed; the message is its own.
+    """
+    done = subprocess.run([str(part) for part in command], cwd=cwd, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise SystemExit(f'{" ".join(map(str, command))}\n{done.stdout}{done.stderr}')
+    return done.stdout
+
+
+def environment(python: str, folder: Path) -> Path:
+    """An empty environment; its interpreter."""
+    run(python, '-m', 'venv', folder, cwd=folder.parent)
+    return folder / 'bin' / 'python'
+
+
+def build(python: Path, work: Path, output: Path) -> tuple[Path, Path]:
+    """The sdist of a copy of the sources, and the wheel of what is in the sdist."""
+    copy = work / 'sources'
+    for part in SOURCES:
+        (copy / part).parent.mkdir(parents=True, exist_ok=True)
+        if (ROOT / part).is_dir():
+            shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns('__pycache__', '*.egg-info'))
+        else:
+            shutil.copy(ROOT / part, copy / part)
+    output.mkdir(parents=True, exist_ok=True)
+    pin = re.search(r'^setuptools==.*$', (ROOT / 'requirements.txt').read_text(), re.MULTILINE)
+    assert pin
+    run(python, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', pin[0], cwd=work)
+    sdist = output / run(python, '-c', BUILD, 'sdist', output, cwd=copy).splitlines()[-1]
+    with tarfile.open(sdist) as archive:
+        archive.extractall(work, filter='data')
+    unpacked = work / sdist.name.removesuffix('.tar.gz')
+    wheel = output / run(python, '-c', BUILD, 'wheel', output, cwd=unpacked).splitlines()[-1]
+    return sdist, wheel
+
+
+def check(python: Path, work: Path) -> None:
+    """Every console script explains itself, and the tutorial's Python runs."""
+    scripts = run(python, '-c', 'import importlib.metadata as m; print(*(s.name for s in '
+                  'm.distribution("shared-control").entry_points if s.group == "console_scripts"))', cwd=work).split()
+    for script in scripts:
+        run(python.parent / script, '--help', cwd=work)
+        print(f'{script} --help: ok', flush=True)
+    [code] = re.findall(r'```python\n(.*?)```', TUTORIAL.read_text(), re.DOTALL)
+    print(run(python, '-c', code, cwd=work).splitlines()[-1])
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--output', type=Path, default=ROOT / 'dist', help='where sdist and wheel go')
+    parser.add_argument('--python', default=sys.executable, help='the interpreter to build and install with')
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder)
+        sdist, wheel = build(environment(args.python, work / 'build'), work, args.output.resolve())
+        print(sdist.name, wheel.name, sep='\n', flush=True)
+        core = environment(args.python, work / 'core')
+        run(core, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', sdist, cwd=work)
+        print(run(core, '-c', 'from shared_control import BALANCE, panda; print("core from the sdist: task",'
+                  ' BALANCE.name, "robot", panda().name)', cwd=work).strip(), flush=True)
+        everything = environment(args.python, work / 'all')
+        run(everything, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', f'{wheel}[all]', cwd=work)
+        check(everything, work)
+
+
+if __name__ == '__main__':
+    main()
