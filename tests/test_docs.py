@@ -68,7 +68,7 @@ def test_ros_commands_name_what_exists(page):
 def test_the_python_of_a_page_runs(page, says, tmp_path):
     code = re.findall(r'```python\n(.*?)```', (ROOT / page).read_text(), re.DOTALL)
     assert len(code) == 1
-    done = subprocess.run([sys.executable, '-c', code[0]], check=True, timeout=300, cwd=tmp_path, capture_output=True,
+    done = subprocess.run([sys.executable, '-c', code[0]], check=True, timeout=600, cwd=tmp_path, capture_output=True,
                           text=True)
     assert says in done.stdout
 

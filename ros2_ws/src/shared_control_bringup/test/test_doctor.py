@@ -61,7 +61,7 @@ def test_little_shared_memory(domain_id):
     mount = 'mount -t tmpfs -o size=1m tmpfs /dev/shm && exec "$@"'
     code, lines = examine('unshare', '--mount', 'sh', '-c', mount, '-')
     level, text, remedy = line_of(lines, '/dev/shm')
-    assert (code, level) == (1, 'FAULT')
+    assert (code, level) == (0, 'note')  # and nodes find each other all the same
     assert 'of 1 MB free' in text and 'remount,size=' in remedy
 
 

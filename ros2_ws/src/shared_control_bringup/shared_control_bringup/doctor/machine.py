@@ -19,8 +19,7 @@ PACKAGES = (
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 SHARED_MEMORY = Path('/dev/shm')
 SHARED_MEMORY_NEEDED = 32e6
-"""Free bytes of /dev/shm: Fast DDS takes 0.5 MB and its ports for each of a session's nine processes, and what killed
-nodes have left stays there; with 1 MB a session does not start."""
+"""Free bytes of /dev/shm for a browser; Docker gives a container 64 MB."""
 LOOP_PRIORITY = REAL_TIME_PRIORITY + 1
 """The highest real-time priority that a session gives (:mod:`shared_control_bringup.node_process`)."""
 
@@ -83,19 +82,18 @@ def _may_be_real_time() -> bool:
 
 
 def shared_memory() -> Iterator[Finding]:
-    """Room in /dev/shm, through which messages go."""
+    """Room in /dev/shm. Nodes talk without it, unless somebody's own DDS profile says otherwise; a browser needs it."""
     subject = str(SHARED_MEMORY)
     if not SHARED_MEMORY.is_dir() or not os.access(SHARED_MEMORY, os.W_OK):
-        yield Finding(Level.FAULT, subject, 'is not there, or not writable for this user',
-                      f'as root: mount -o remount,rw {subject} (or mount -t tmpfs tmpfs {subject})')
+        yield Finding(Level.NOTE, subject, 'is not there, or not writable for this user: nodes do without, Chromium '
+                      'does not', f'as root: mount -o remount,rw {subject} (or mount -t tmpfs tmpfs {subject})')
         return
-    free, total = shutil.disk_usage(SHARED_MEMORY).free, shutil.disk_usage(SHARED_MEMORY).total
-    left = [path for path in SHARED_MEMORY.glob('*fastrtps*') if path.is_file()]
-    text = f'{free / 1e6:.0f} of {total / 1e6:.0f} MB free, {len(left)} files of Fast DDS'
-    if free < SHARED_MEMORY_NEEDED:
-        yield Finding(Level.FAULT, subject, text,
-                      f'when no node runs, rm {subject}/fastrtps_* {subject}/sem.fastrtps_*; or, as root, '
-                      f'mount -o remount,size=1g {subject} (Docker: --shm-size=1g, or --ipc=host)')
+    usage = shutil.disk_usage(SHARED_MEMORY)
+    text = f'{usage.free / 1e6:.0f} of {usage.total / 1e6:.0f} MB free'
+    if usage.free < SHARED_MEMORY_NEEDED:
+        yield Finding(Level.NOTE, subject, f'{text}: the nodes do without, Chromium does not',
+                      f'remove what is left in it; or, as root, mount -o remount,size=1g {subject} '
+                      '(Docker: --shm-size=1g, or --ipc=host)')
     else:
         yield Finding(Level.OK, subject, text)
 
