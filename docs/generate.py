@@ -63,14 +63,10 @@ def parameters() -> str:
 def api(package: str) -> str:
     """The public modules of a package, by autodoc."""
     module = importlib.import_module(package)
-    found = [info.name for info in pkgutil.walk_packages(module.__path__, f'{package}.')]
-    public = [name for name in found if not any(part.startswith('_') for part in name.split('.'))]
+    found = pkgutil.walk_packages(module.__path__, f'{package}.')
+    public = [info for info in found if not any(part.startswith('_') for part in info.name.split('.'))]
     text = f'# {package}\n\n{(inspect.getdoc(module) or "").splitlines()[0]}\n'
-    for name in public:
-        options = ':members:\n:undoc-members:\n' if not _is_package(name) else ''
-        text += f'\n## {name}\n\n```{{automodule}} {name}\n{options}```\n'
+    for info in public:
+        options = '' if info.ispkg else ':members:\n:undoc-members:\n'
+        text += f'\n## {info.name}\n\n```{{automodule}} {info.name}\n{options}```\n'
     return text
-
-
-def _is_package(name: str) -> bool:
-    return hasattr(importlib.import_module(name), '__path__')
