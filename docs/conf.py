@@ -34,7 +34,9 @@ def _read(app, page, content):
     text, folder = content[0], (HERE / page).parent
     if page in TAKEN_OVER:
         source = TAKEN_OVER[page]
-        text = source.read_text().replace('](docs/', '](') + text
+        text = source.read_text() + text
+        if source.parent != HERE:  # its links begin at the repository's root
+            text = re.sub(r'\]\((?!\w+:)(docs/)?', lambda link: '](' if link[1] else '](../', text)
         text = text.replace('](../CHANGELOG.md)', '](changelog.md)')
 
     def named(link):
