@@ -9,6 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 from shared_control import contract
 from shared_control.cli import main
+from shared_control.plant import PlantState
+from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import Balance
 from shared_control.tasks.plate import Plate
@@ -62,10 +64,37 @@ def test_moments_are_those_that_counted_not_those_that_were_asked_for(lessons, t
 
 
 @pytest.mark.parametrize('topic', made.APPLIED)
-def test_a_bag_without_the_moments_that_counted_is_refused(lessons, tmp_path, topic):
+def test_a_bag_of_which_a_moment_that_counted_is_missing_is_refused(lessons, tmp_path, topic):
     bag = read_bag(made.record(lessons[:1]).write(tmp_path / 'bag', without=(topic,)))
     with pytest.raises(ValueError, match=f'no messages on {topic.full_name}'):
         episode_frames(bag)
+
+
+def test_a_bag_without_the_parts_of_the_sum_is_exported_without_them(lessons, frames, tmp_path):
+    bag = made.record(lessons).write(tmp_path / 'bag', without=(contract.HUMAN_APPLIED, contract.AGENT_APPLIED))
+    without = episode_frames(read_bag(bag, frames[0].task))
+    write_parquet(without, tmp_path / 'one.parquet')
+    table = pd.read_parquet(tmp_path / 'one.parquet')
+    assert {'m_y_applied', 'reward'} <= set(table) and not {'m_y_human', 'm_y_agent'} & set(table)
+    write_lerobot(without, tmp_path / 'set')
+    named = json.loads((tmp_path / 'set/meta/info.json').read_text())['features']
+    assert 'action' in named and 'intervention' not in named and 'complementary_info.action_human' not in named
+    with pytest.raises(ValueError, match=r'with the parts of the sum.*without the parts of the sum.*export them apart'):
+        write_lerobot([*frames, *without], tmp_path / 'both')
+
+
+def test_a_step_has_what_the_learner_saw_and_earned(frames):
+    task, model = frames[0].task, RobotModel()
+    for frame in frames:
+        none = np.zeros(len(task.axes))
+        states = [task.describe(PlantState(q, tuple(ball), tuple(velocity), none, none, none), model)
+                  for q, ball, velocity in zip(frame.q, frame.ball_position, frame.ball_velocity, strict=True)]
+        np.testing.assert_array_equal(frame.observation, [task.observe(state) for state in states])
+        assert frame.reward[:-1] == pytest.approx([sum(task.reward_terms(state).values()) for state in states[1:]])
+        assert not frame.failed
+    assert [frame.succeeded for frame in frames] == [
+        task.succeeded(np.append(frame.position_error[1:], frame.position_error[-1]), np.zeros(len(frame)), False)
+        for frame in frames]
 
 
 def test_parquet_is_read_back_with_units(frames, tmp_path):
@@ -108,6 +137,14 @@ def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
         assert episode['stats/action/mean'][0] == pytest.approx(
             np.stack(group.action.to_numpy()).reshape(episode.length, -1)[:, 0].mean(), abs=1e-5)
 
+    assert episodes.session_episode.tolist() == [1, 2] and set(episodes.phase) == {'teach'}
+    whole = pd.read_parquet(root / 'data/chunk-000/file-000.parquet')
+    assert np.flatnonzero(whole['next.done']).tolist() == np.flatnonzero(whole['next.truncated']).tolist() == [49, 129]
+    assert whole['intervention'].sum() == sum((frame.human != 0).any(axis=1).sum() for frame in frames)
+    rewards = np.concatenate([frame.reward for frame in frames])
+    assert whole['next.reward'].to_numpy() == pytest.approx(rewards, rel=1e-5)
+    assert episodes.outcome.tolist() == ['success' if frame.succeeded else 'failure' for frame in frames]
+
     schema = pq.read_schema(root / 'data/chunk-000/file-000.parquet')
     stats = json.loads((root / 'meta/stats.json').read_text())
     assert schema.names == list(info['features']) == list(stats) == list(features(frames[0].task))
@@ -130,5 +167,12 @@ def test_the_command_says_where_and_never_overwrites_a_data_set(bag, tmp_path, m
     for code, said in ((0, 'frames'), (2, 'exists already')):
         assert run(bag, '--format', 'lerobot', '--output', tmp_path / 'set') == code
         assert said in ''.join(capsys.readouterr())
+    assert run(bag, mcap, '--format', 'lerobot', '--output', tmp_path / 'two') == 0
+    assert '260 frames of 4 episodes' in capsys.readouterr().out
+    two = pd.read_parquet(tmp_path / 'two/meta/episodes/chunk-000/file-000.parquet')
+    assert two.session_episode.tolist() == [1, 2, 1, 2]
+    assert run(mcap, '--task', 'plate', '--output', tmp_path / 'plate.parquet') == 0
+    assert 'm_x_applied' in pd.read_parquet(tmp_path / 'plate.parquet')
+    capsys.readouterr()
     assert run(tmp_path / 'none.mcap') == 2
     assert 'there is no bag' in capsys.readouterr().err

@@ -9,7 +9,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from shared_control.plugins import WORLDS, names
+from shared_control.plugins import TASKS, WORLDS, load, names
 
 
 def add_command(commands: argparse._SubParsersAction) -> None:
@@ -27,6 +27,11 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--seed', type=int, default=None, help='of its ball starts; always the same when not given')
     parser.add_argument('--until-known', action='store_true',
                         help='only whether 19 of 20 randomized episodes succeed; stops as soon as that is known')
+    parser.add_argument('--lerobot-python', type=Path, metavar='FILE', default=None,
+                        help='the Python that lerobot is installed for: POLICY may be a folder pretrained_model/ that '
+                             'it has trained on an exported data set')
+    parser.add_argument('--task', choices=names(TASKS), default='balance',
+                        help='what a policy of LeRobot was trained for (default: %(default)s)')
     parser.add_argument('--json', type=Path, metavar='FILE', help='write all figures there')
     parser.add_argument('--out', type=Path, metavar='DIR', help='write tracks (CSV) and figures (PNG, SVG) there')
     parser.set_defaults(run=run)
@@ -43,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     from shared_control_learning.evaluation.evaluate import TEST_SEED
 
     from .policies import load_policies
-    policies = load_policies(args.policies)
+    policies = load_policies(args.policies, args.lerobot_python, load(TASKS, args.task)())
     seed = TEST_SEED if args.seed is None else args.seed
     return _decide(policies, args.physics, seed, args.json) if args.until_known else _test(policies, args, seed)
 

@@ -4,14 +4,25 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
 from shared_control_learning.learner import Learner
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy
 
 from ..session.folder import SessionFolder
+from .lerobot_policy import LeRobotPolicy
+
+Policy = Learner | LeRobotPolicy
+"""What acts alone: it has a task and ``act``."""
 
 
-def load_policies(paths: Sequence[Path]) -> dict[str, Learner]:
+def load_policies(paths: Sequence[Path], lerobot_python: Path | None = None, task: Task = BALANCE,
+                  ) -> dict[str, Policy]:
     """The policies, by their paths from the folder that they have in common.
+
+    Args:
+        lerobot_python: the Python that lerobot is installed for, to run policies that it has trained.
+        task: what those were trained for.
 
     Raises:
         PolicyFileError: one is missing or unusable, or a folder has none.
@@ -21,7 +32,16 @@ def load_policies(paths: Sequence[Path]) -> dict[str, Learner]:
     if len(set(absolute)) < len(absolute):
         raise ValueError(f'a policy is given twice: {", ".join(map(str, paths))}')
     root = os.path.commonpath([path.parent for path in absolute])
-    return {str(path.relative_to(root)): load_policy(_policy_file(path)) for path in absolute}
+    return {str(path.relative_to(root)): _load(path, lerobot_python, task) for path in absolute}
+
+
+def _load(path: Path, lerobot_python: Path | None, task: Task) -> Policy:
+    if not LeRobotPolicy.is_at(path):
+        return load_policy(_policy_file(path))
+    if lerobot_python is None:
+        raise ValueError(f'{path} is a policy of LeRobot: --lerobot-python FILE says which Python lerobot is installed '
+                         'for')
+    return LeRobotPolicy(path, lerobot_python, task)
 
 
 def _policy_file(path: Path) -> Path:

@@ -1,6 +1,7 @@
 """The episodes of a bag, time-aligned at the policy's rate."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from shared_control import contract
@@ -25,6 +26,8 @@ class EpisodeFrames:
     """
 
     task: Task
+    session: str
+    """Name of the session, or of its bag."""
     number: int
     phase: str
     """``teach`` or ``test``"""
@@ -46,12 +49,20 @@ class EpisodeFrames:
     """(n, 2), the ball in the tray's frame, m"""
     lean: np.ndarray
     """(n, 2), sines of the tray's tilt along base x and base y"""
-    agent: np.ndarray
-    """The agent's moment as it counted, (n, k), N m"""
-    human: np.ndarray
-    """The human's, likewise"""
+    observation: np.ndarray
+    """(n, observation_size), what the task has a learner see"""
+    reward: np.ndarray
+    """(n,), unscaled, of the state at the end of the period"""
+    failed: bool
+    """Whether the task failed; else time was up."""
+    succeeded: bool
+    """Whether the task calls the episode a success."""
     applied: np.ndarray
-    """Their sum as applied, likewise"""
+    """The sum of both moments as applied, (n, k), N m"""
+    agent: np.ndarray | None
+    """The agent's moment as it counted, likewise; None when the controller did not publish the parts"""
+    human: np.ndarray | None
+    """The human's, likewise"""
 
     def __len__(self) -> int:
         return len(self.stamp_ns)
@@ -60,50 +71,70 @@ class EpisodeFrames:
 def episode_frames(bag: Bag) -> list[EpisodeFrames]:
     """The finished episodes of a bag, in their order.
 
+    A controller that publishes no parts of the sum (another one, or of the first version) leaves ``agent`` and
+    ``human`` out.
+
     Raises:
-        ValueError: it has none, or not the moments that counted; the message names the bag.
+        ValueError: it has no finished episode, or nothing was applied, or one of the two parts alone; the message
+            names the bag.
     """
-    for topic, wrenches in ((contract.HUMAN_APPLIED, bag.human_applied), (contract.AGENT_APPLIED, bag.agent_applied),
-                            (contract.APPLIED_WRENCH, bag.applied)):
-        if not len(wrenches.stamp_ns):
-            raise ValueError(f'the bag {bag.path} has no messages on {topic.full_name}')
-    frames = [_frames(bag, track) for track in episode_tracks(bag)]
+    if not len(bag.applied.stamp_ns):
+        raise ValueError(f'the bag {bag.path} has no messages on {contract.APPLIED_WRENCH.full_name}: what moved the '
+                         'robot is not known, so there is no action to export')
+    parts = {topic.full_name: bool(len(wrenches.stamp_ns)) for topic, wrenches in (
+        (contract.HUMAN_APPLIED, bag.human_applied), (contract.AGENT_APPLIED, bag.agent_applied))}
+    if any(parts.values()) and not all(parts.values()):
+        missing, = (name for name, there in parts.items() if not there)
+        raise ValueError(f'the bag {bag.path} has no messages on {missing}, but the other part of the sum: it is not '
+                         'whole')
+    frames = [_frames(bag, track, all(parts.values())) for track in episode_tracks(bag)]
     if not frames:
         raise ValueError(f'the bag {bag.path} holds no finished episode')
     return frames
 
 
-def _frames(bag: Bag, track: EpisodeTrack) -> EpisodeFrames:
+def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool) -> EpisodeFrames:
     window = run_window(bag, track.received_ns[0])
     agent = bag.agent.between(window).stamp_ns
     agent = agent[np.searchsorted(agent, track.start_ns):]
     # The agent's stamps are those of the states that it acted on.
     start_ns = int(agent[0]) if len(agent) and agent[0] - track.start_ns < PERIOD_NS else track.start_ns
     begin = np.arange(start_ns, track.end_ns, PERIOD_NS)
-    joints, ball = (_newest(series.received_ns, series.stamp_ns, begin, window)
+    at = np.append(begin, track.end_ns)
+    joints, ball = (_newest(series.received_ns, series.stamp_ns, at, window)
                     for series in (bag.joint_states, bag.ball))
-    moments = []
-    for wrenches in (bag.agent_applied, bag.human_applied, bag.applied):
+    moments = {}
+    for who, wrenches in (('applied', bag.applied), *(
+            (('agent', bag.agent_applied), ('human', bag.human_applied)) if with_parts else ())):
         own = wrenches.between(window)
         if not len(own.stamp_ns):
             raise ValueError(f'the bag {bag.path} has no moments of episode {track.number}')
-        moments.append(own.moment_at(begin + PERIOD_NS - 1))
-    q, position = bag.joint_states.q[joints], bag.ball.position[ball]
-    model = RobotModel()
-    velocity = bag.ball.velocity[ball]
-    seen = np.array([_seen(bag.task, model, *row) for row in zip(q, position, velocity, strict=True)], float)
-    seen = seen.reshape(-1, 6)
+        moments[who] = own.moment_at(begin + PERIOD_NS - 1)
+    q, position, velocity = bag.joint_states.q[joints], bag.ball.position[ball], bag.ball.velocity[ball]
+    model, task, none = RobotModel(), bag.task, np.zeros(len(bag.task.axes))
+    states = [task.describe(PlantState(*row, none, none, none), model) for row in zip(
+        q, map(tuple, position), map(tuple, velocity), strict=True)]
+    errors, speeds = (np.array([getattr(state, name) for state in states]) for name in ('position_error', 'velocity'))
+    poses = [model.tray_pose(row) for row in q]
+    count = len(begin)
     return EpisodeFrames(
-        bag.task, track.number, track.phase, begin, q, bag.joint_states.qd[joints], position, velocity,
-        seen[:, 0], seen[:, 1], seen[:, 2:4], seen[:, 4:], *moments)
+        task, _session(bag.path), track.number, track.phase, begin, q[:count], bag.joint_states.qd[joints][:count],
+        position[:count], velocity[:count], errors[:count],
+        pitch=np.array([pitch(rotation) for _, rotation in poses])[:count],
+        on_tray=np.array([rotation.T[:2] @ (where - origin) for (origin, rotation), where in zip(
+            poses, position, strict=True)])[:count],
+        lean=np.array([rotation[:2, 2] for _, rotation in poses])[:count],
+        observation=np.array([task.observe(state) for state in states])[:count],
+        reward=np.array([sum(task.reward_terms(state).values()) for state in states])[1:],
+        failed=track.failed, succeeded=bool(task.succeeded(errors[1:], speeds[1:], track.failed)),
+        applied=moments['applied'], agent=moments.get('agent'), human=moments.get('human'))
 
 
-def _seen(task: Task, model: RobotModel, q: np.ndarray, ball: np.ndarray, velocity: np.ndarray) -> list[float]:
-    """Position error, pitch, the ball on the tray and the lean at one moment."""
-    none = np.zeros(len(task.axes))
-    state = task.describe(PlantState(q, tuple(ball), tuple(velocity), none, none, none), model)
-    origin, rotation = model.tray_pose(q)
-    return [state.position_error, pitch(rotation), *rotation.T[:2] @ (ball - origin), *rotation[:2, 2]]
+def _session(bag: Path) -> str:
+    """A session's folder has its bag under this name; any other bag goes by its own."""
+    bag = bag.absolute()
+    folder = bag.parent if bag.is_file() else bag
+    return folder.parent.name if folder.name == 'bag' else bag.stem
 
 
 def _newest(received_ns: np.ndarray, stamps_ns: np.ndarray, at_ns: np.ndarray, window: tuple[int, int]) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A bag as a LeRobot data set (format v3.0 of huggingface/lerobot; its ``datasets/dataset_writer.py`` is the model).
+"""Bags as a LeRobot data set (format v3.0 of lerobot 0.4 to 0.6; its ``datasets/dataset_writer.py`` is the model).
 
     meta/info.json                               features, counts, rate
     meta/stats.json                              of each feature over all frames
@@ -28,26 +28,40 @@ from .frames import EpisodeFrames
 VERSION = 'v3.0'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
-_ONE_AXIS = ('ball_velocity', 'tray_pitch')
-_TWO_AXES = ('ball_on_tray_x', 'ball_on_tray_y', 'ball_velocity_x', 'ball_velocity_y', 'tray_lean_x', 'tray_lean_y')
-"""What the state has of ball and tray beside the position error."""
+EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome')
+"""What the list of episodes has of ours, beside what LeRobot asks for."""
 
 
-def features(task: Task) -> dict[str, dict[str, Any]]:
+def features(task: Task, with_parts: bool = True) -> dict[str, dict[str, Any]]:
     """The features of a data set of ``task``, SI units, moments along its axes.
 
     ``action`` is what moved the robot. What agent and human added to it stand beside it under a prefix that LeRobot's
-    policies do not take for a further action to be learned.
+    policies do not take for a further action to be learned, as do the joints and the ball. What the task has a learner
+    see stands there twice: some of LeRobot's policies (SAC) ask for ``observation.state``, others (ACT, Diffusion) for
+    ``observation.environment_state`` when there is no picture.
+
+    Args:
+        with_parts: whether it is known what agent and human gave.
     """
     moments = {who: [f'{AXIS_NAMES[row]}_{who}' for row in task.axes] for who in ('applied', 'agent', 'human')}
-    joints = panda().joints
-    return {
-        'observation.state': {'dtype': 'float32', 'names': [
-            *joints, *(f'{name}_velocity' for name in joints), 'position_error',
-            *(_ONE_AXIS if len(task.axes) == 1 else _TWO_AXES)]},
-        'action': {'dtype': 'float32', 'names': moments['applied']},
+    joints, observed = panda().joints, [f'observation_{number}' for number in range(task.observation_size)]
+    parts: dict[str, dict[str, Any]] = {} if not with_parts else {
         'complementary_info.action_agent': {'dtype': 'float32', 'names': moments['agent']},
         'complementary_info.action_human': {'dtype': 'float32', 'names': moments['human']},
+        'intervention': {'dtype': 'bool', 'names': None}}
+    return {
+        'observation.state': {'dtype': 'float32', 'names': observed},
+        'observation.environment_state': {'dtype': 'float32', 'names': observed},
+        'action': {'dtype': 'float32', 'names': moments['applied']},
+        **parts,
+        'next.reward': {'dtype': 'float32', 'names': None},
+        'next.done': {'dtype': 'bool', 'names': None},
+        'next.truncated': {'dtype': 'bool', 'names': None},
+        'next.success': {'dtype': 'bool', 'names': None},
+        'complementary_info.joint_positions': {'dtype': 'float32', 'names': list(joints)},
+        'complementary_info.joint_velocities': {'dtype': 'float32', 'names': list(joints)},
+        'complementary_info.ball': {'dtype': 'float32', 'names': [
+            'position_x', 'position_y', 'position_z', 'velocity_x', 'velocity_y', 'velocity_z']},
         'timestamp': {'dtype': 'float32', 'names': None},
         'frame_index': {'dtype': 'int64', 'names': None},
         'episode_index': {'dtype': 'int64', 'names': None},
@@ -59,9 +73,14 @@ def features(task: Task) -> dict[str, dict[str, Any]]:
 def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
     """Write the data set into ``folder``, which is made.
 
+    Args:
+        episodes: of one session or several, of one task.
+
     Raises:
         FileExistsError: it exists and is not empty.
+        ValueError: the episodes are not of one task, or some lack the parts of the sum; the message names the sessions.
     """
+    task, with_parts = _common(episodes)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise FileExistsError(f'{folder} exists already: choose another --output')
     data, episodes_path = (folder / 'data' / _first_file(), folder / 'meta' / 'episodes' / _first_file())
@@ -70,8 +89,7 @@ def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
     starts = np.cumsum([0, *map(len, episodes)]).tolist()
     columns = [_columns(episode, index, start) for index, (episode, start) in
                enumerate(zip(episodes, starts[:-1], strict=True))]
-    task = episodes[0].task
-    schema = _schema(task)
+    schema = _schema(task, with_parts)
     with pq.ParquetWriter(data, schema, compression='snappy') as writer:
         for episode in columns:
             writer.write_table(pa.Table.from_arrays([_array(values) for values in episode.values()], schema=schema))
@@ -80,40 +98,63 @@ def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
              'dataset_from_index': starts[index], 'dataset_to_index': starts[index + 1],
              **{f'stats/{feature}/{name}': value for feature, values in _stats(episode).items()
                 for name, value in values.items()},
-             'meta/episodes/chunk_index': 0, 'meta/episodes/file_index': 0} for index, episode in enumerate(columns)]
+             'meta/episodes/chunk_index': 0, 'meta/episodes/file_index': 0,
+             **dict(zip(EPISODE_COLUMNS, _of_the_session(episodes[index]), strict=True))}
+            for index, episode in enumerate(columns)]
     pq.write_table(pa.Table.from_pylist(rows), episodes_path)
     sentences = pd.Index([task.instruction], name='task')
     pd.DataFrame({'task_index': [0]}, index=sentences).to_parquet(folder / 'meta' / 'tasks.parquet')
     whole = {name: np.concatenate([episode[name] for episode in columns]) for name in columns[0]}
     _write_json(folder / 'meta' / 'stats.json', _stats(whole))
-    _write_json(folder / 'meta' / 'info.json', _info(task, len(episodes), starts[-1]))  # last: a reader begins with it
+    # Last: a reader begins with it.
+    _write_json(folder / 'meta' / 'info.json', _info(task, with_parts, len(episodes), starts[-1]))
 
 
 def _first_file() -> str:
     return FILE.format(chunk_index=0, file_index=0) + '.parquet'
 
 
+def _common(episodes: list[EpisodeFrames]) -> tuple[Task, bool]:
+    """The task of all episodes, and whether it is known what agent and human gave."""
+    found: dict[tuple[Task, bool], str] = {}
+    for episode in episodes:
+        found.setdefault((episode.task, episode.human is not None), episode.session)
+    if len(found) > 1:
+        what = '; '.join(f'{session}: {task.name}, {"with" if parts else "without"} the parts of the sum'
+                         for (task, parts), session in found.items())
+        raise ValueError(f'a LeRobot data set has the same columns throughout, and these sessions differ ({what}): '
+                         'export them apart')
+    return next(iter(found))
+
+
+def _of_the_session(episode: EpisodeFrames) -> tuple[str, int, str, str]:
+    return episode.session, episode.number, episode.phase, 'success' if episode.succeeded else 'failure'
+
+
 def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.ndarray]:
     """The features of an episode, each (n, width) in its type."""
     count = len(episode)
-    seen = ([episode.ball_velocity[:, 0], episode.pitch] if len(episode.task.axes) == 1 else
-            [episode.on_tray, episode.ball_velocity[:, :2], episode.lean])
-    state = np.column_stack([episode.q, episode.qd, episode.position_error, *seen])
     frames = np.arange(count)
-    values = (state, episode.applied, episode.agent, episode.human, frames * POLICY_PERIOD, frames,
-              np.full(count, index), frames + start, np.zeros(count))
-    return {name: value.reshape(count, -1).astype(feature['dtype'])
-            for (name, feature), value in zip(features(episode.task).items(), values, strict=True)}
+    last = frames == count - 1
+    parts = () if episode.human is None else (episode.agent, episode.human, episode.human.any(axis=1))
+    values = (
+        episode.observation, episode.observation, episode.applied, *parts, episode.reward, last,
+        last & (not episode.failed), last & episode.succeeded, episode.q, episode.qd,
+        np.column_stack([episode.ball_position, episode.ball_velocity]), frames * POLICY_PERIOD, frames,
+        np.full(count, index), frames + start, np.zeros(count))
+    named = features(episode.task, episode.human is not None)
+    return {name: np.reshape(value, (count, -1)).astype(feature['dtype'])
+            for (name, feature), value in zip(named.items(), values, strict=True)}
 
 
 def _shape(feature: dict[str, Any]) -> list[int]:
     return [len(feature['names']) if feature['names'] else 1]
 
 
-def _schema(task: Task) -> pa.Schema:
+def _schema(task: Task, with_parts: bool) -> pa.Schema:
     """A feature of one number is a column of numbers, a wider one a column of lists of fixed length."""
     fields = []
-    for name, feature in features(task).items():
+    for name, feature in features(task, with_parts).items():
         kind, (width,) = pa.type_for_alias(feature['dtype']), _shape(feature)
         fields.append(pa.field(name, kind if width == 1 else pa.list_(kind, width)))
     return pa.schema(fields)
@@ -131,17 +172,18 @@ def _stats(columns: dict[str, np.ndarray]) -> dict[str, dict[str, list]]:
         'min': values.min(0).tolist(), 'max': values.max(0).tolist(), 'mean': values.mean(0, float).tolist(),
         'std': values.std(0, float).tolist(), 'count': [len(values)],
         **{f'q{round(100 * q):02d}': np.quantile(values, q, axis=0).tolist() for q in QUANTILES},
-    } for name, values in columns.items()}
+    } for name, values in ((name, column.astype(float) if column.dtype == bool else column)
+                           for name, column in columns.items())}
 
 
-def _info(task: Task, episodes: int, frames: int) -> dict[str, Any]:
+def _info(task: Task, with_parts: bool, episodes: int, frames: int) -> dict[str, Any]:
     return {
         'codebase_version': VERSION, 'robot_type': 'panda', 'fps': round(1 / POLICY_PERIOD),
         'total_episodes': episodes, 'total_frames': frames, 'total_tasks': 1, 'splits': {'train': f'0:{episodes}'},
         'chunks_size': 1000, 'data_files_size_in_mb': 100, 'video_files_size_in_mb': 200,
         'data_path': f'data/{FILE}.parquet', 'video_path': None,
         'features': {name: {'dtype': feature['dtype'], 'shape': _shape(feature), 'names': feature['names']}
-                     for name, feature in features(task).items()}}
+                     for name, feature in features(task, with_parts).items()}}
 
 
 def _write_json(path: Path, content: dict[str, Any]) -> None:

@@ -23,6 +23,7 @@ def write_parquet(episodes: list[EpisodeFrames], path: Path) -> None:
 def _table(episode: EpisodeFrames) -> pa.Table:
     joints = range(episode.q.shape[1])
     columns = {
+        'session': np.full(len(episode), episode.session),
         'episode': np.full(len(episode), episode.number), 'phase': np.full(len(episode), episode.phase),
         'frame': np.arange(len(episode)), 'seconds': (episode.stamp_ns - episode.stamp_ns[0]) * 1e-9,
         'stamp_ns': episode.stamp_ns,
@@ -34,8 +35,9 @@ def _table(episode: EpisodeFrames) -> pa.Table:
         **{f'on_tray_{axis}': episode.on_tray[:, index] for index, axis in enumerate('xy')},
         **{f'lean_{axis}': episode.lean[:, index] for index, axis in enumerate('xy')},
         **{f'{AXIS_NAMES[row]}_{who}': moments[:, axis] for who, moments in (
-            ('agent', episode.agent), ('human', episode.human), ('applied', episode.applied))
-           for axis, row in enumerate(episode.task.axes)}}
+            ('agent', episode.agent), ('human', episode.human), ('applied', episode.applied)) if moments is not None
+           for axis, row in enumerate(episode.task.axes)},
+        'reward': episode.reward}
     arrays = [pa.array(column) for column in columns.values()]
     return pa.Table.from_arrays(arrays, schema=pa.schema(
         [pa.field(name, array.type, metadata=_unit(name)) for name, array in zip(columns, arrays, strict=True)]))

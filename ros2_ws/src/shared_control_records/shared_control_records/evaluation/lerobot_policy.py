@@ -1,0 +1,66 @@
+"""A policy that LeRobot has trained on an exported data set, for the tests of ours.
+
+It runs in a process of lerobot's own Python (:mod:`.lerobot_server`), since lerobot asks for other versions of torch
+and Python than this project.
+"""
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+from shared_control.processes import leave_with_the_parent
+from shared_control.tasks.task import Task
+
+SERVER = Path(__file__).with_name('lerobot_server.py')
+
+
+class LeRobotPolicy:
+    """The policy of a folder, acting as a learner does.
+
+    Args:
+        folder: ``pretrained_model/`` of a training run of lerobot.
+        python: the Python that lerobot is installed for.
+        task: what it was trained for.
+
+    Raises:
+        ValueError: it cannot be loaded; the message has the last line of the reason.
+    """
+
+    @staticmethod
+    def is_at(folder: Path) -> bool:
+        """Whether a folder holds a policy of LeRobot."""
+        return (folder / 'config.json').is_file() and (folder / 'model.safetensors').is_file()
+
+    def __init__(self, folder: Path, python: Path, task: Task):
+        self.task = task
+        self._folder = folder
+        self._process = subprocess.Popen(
+            [python, SERVER, folder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            preexec_fn=leave_with_the_parent)
+        self._answer()
+
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        """The action, (k,), within -1..1, for what the task shows a learner, (observation_size,)."""
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(json.dumps(observation.tolist()) + '\n')
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            pass  # the answer says why
+        moment = np.array(json.loads(self._answer()))
+        return np.clip(moment / self.task.scale, -1.0, 1.0).astype(np.float32)
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.communicate()
+
+    def _answer(self) -> str:
+        assert self._process.stdout is not None
+        line = self._process.stdout.readline()
+        if not line:
+            _, errors = self._process.communicate()
+            reason = (errors.strip().splitlines() or ['no reason given'])[-1]
+            raise ValueError(f'LeRobot cannot use the policy in {self._folder}: {reason}')
+        return line
