@@ -93,6 +93,7 @@ setup(
     extras_require={
         **{extra: _requirements(PACKAGES, names, (extra,)) for extra, names in EXTRAS.items()},
         'docs': [_pins()[name] for name in DOCS],
+        'view': [*_requirements(PACKAGES, EXTRAS['study']), 'rerun-sdk==0.41.0'],
         'all': _requirements(PACKAGES, PACKAGES, EXTRAS)},
     entry_points=_entry_points(PACKAGES),
 )

@@ -21,7 +21,7 @@ PIP = {'pinocchio': 'pin', 'mujoco': 'mujoco-core',
        'markupsafe': 'jinja2', 'fastapi': 'nicegui', 'starlette': 'nicegui', 'uvicorn': 'nicegui'}
 """Where modules come from that are in no distribution of their name."""
 ROS = {'rclpy', 'launch', 'launch_ros'}
-OPTIONAL = {'pytest', 'selenium', 'panda_py', 'ray'}
+OPTIONAL = {'pytest', 'selenium', 'panda_py', 'ray', 'rerun', 'lerobot'}
 """Imported where they are needed, with a clear message when they are missing."""
 
 

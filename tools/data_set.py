@@ -175,8 +175,8 @@ while the tutor presses keys; both moments are summed. Made by `{command}`, whic
 - `bags/SESSION/`: MCAP, topics of the project's contract, a sample every 20 ms of the robot's time (a recorded session
   of the live graph has 1 kHz); `shared-control view`, `report`, `export` and `ros2 bag` read it.
 - `lerobot/TASK/`: LeRobot v3.0. `observation.state` (the same as `observation.environment_state`): what the task
-  shows a learner; `action`: the applied moment, N m; `complementary_info.action_agent`, `.action_human`: its parts;
-  `intervention`; `next.reward`, `next.done`, `next.truncated`, `next.success` (by the task's own criterion).
+  shows a learner; `action`: the applied moment (M_x, M_y), N m; `complementary_info.action_agent`, `.action_human`: its
+  parts; `intervention`; `next.reward`, `next.done`, `next.truncated`, `next.success` (by the task's own criterion).
   `meta/episodes` has the session of each episode.
 
 Limits: early episodes of learning, with exploring and falls, are in it on purpose. One simulator, one robot, one ball.

@@ -12,6 +12,8 @@ import numpy as np
 from shared_control.processes import leave_with_the_parent
 from shared_control.tasks.task import Task
 
+from ..export.lerobot import action_rows
+
 SERVER = Path(__file__).with_name('lerobot_server.py')
 
 
@@ -48,7 +50,8 @@ class LeRobotPolicy:
             self._process.stdin.flush()
         except BrokenPipeError:
             pass  # the answer says why
-        moment = np.array(json.loads(self._answer()))
+        answer = dict(zip(action_rows(self.task), json.loads(self._answer()), strict=True))
+        moment = np.array([answer[row] for row in self.task.axes])
         return np.clip(moment / self.task.scale, -1.0, 1.0).astype(np.float32)
 
     def close(self) -> None:

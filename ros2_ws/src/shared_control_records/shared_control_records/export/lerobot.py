@@ -32,6 +32,15 @@ EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome')
 """What the list of episodes has of ours, beside what LeRobot asks for."""
 
 
+def action_rows(task: Task) -> tuple[int, ...]:
+    """Rows of the wrench that actions have: both horizontal moments, and what else the task shares.
+
+    LeRobot takes a feature of one number for a scalar, which its policies cannot have for an action: so a task with
+    one axis has a second one that is zero.
+    """
+    return tuple(sorted({3, 4, *task.axes}))
+
+
 def features(task: Task, with_parts: bool = True) -> dict[str, dict[str, Any]]:
     """The features of a data set of ``task``, SI units, moments along its axes.
 
@@ -43,7 +52,7 @@ def features(task: Task, with_parts: bool = True) -> dict[str, dict[str, Any]]:
     Args:
         with_parts: whether it is known what agent and human gave.
     """
-    moments = {who: [f'{AXIS_NAMES[row]}_{who}' for row in task.axes] for who in ('applied', 'agent', 'human')}
+    moments = {who: [f'{AXIS_NAMES[row]}_{who}' for row in action_rows(task)] for who in ('applied', 'agent', 'human')}
     joints, observed = panda().joints, [f'observation_{number}' for number in range(task.observation_size)]
     parts: dict[str, dict[str, Any]] = {} if not with_parts else {
         'complementary_info.action_agent': {'dtype': 'float32', 'names': moments['agent']},
@@ -136,15 +145,23 @@ def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.nda
     count = len(episode)
     frames = np.arange(count)
     last = frames == count - 1
-    parts = () if episode.human is None else (episode.agent, episode.human, episode.human.any(axis=1))
+    parts = () if episode.human is None or episode.agent is None else (
+        _along(episode, episode.agent), _along(episode, episode.human), episode.human.any(axis=1))
     values = (
-        episode.observation, episode.observation, episode.applied, *parts, episode.reward, last,
+        episode.observation, episode.observation, _along(episode, episode.applied), *parts, episode.reward, last,
         last & (not episode.failed), last & episode.succeeded, episode.q, episode.qd,
         np.column_stack([episode.ball_position, episode.ball_velocity]), frames * POLICY_PERIOD, frames,
         np.full(count, index), frames + start, np.zeros(count))
     named = features(episode.task, episode.human is not None)
     return {name: np.reshape(value, (count, -1)).astype(feature['dtype'])
             for (name, feature), value in zip(named.items(), values, strict=True)}
+
+
+def _along(episode: EpisodeFrames, moments: np.ndarray) -> np.ndarray:
+    """Moments along the task's axes, (n, k), along :func:`action_rows`."""
+    wrenches = np.zeros((len(moments), 6))
+    wrenches[:, episode.task.axes] = moments
+    return wrenches[:, action_rows(episode.task)]
 
 
 def _shape(feature: dict[str, Any]) -> list[int]:

@@ -1,0 +1,1 @@
+"""A session in Rerun: everything that its bag holds, on one time line."""
