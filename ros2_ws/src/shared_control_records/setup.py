@@ -17,7 +17,8 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_sim', 'shared_control_learning', 'numpy', 'pin', 'pydantic', 'rosbags',
-        'mcap', 'zstandard', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'tqdm',
+        'mcap', 'zstandard', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'pyarrow', 'scipy', 'torch',
+        'tqdm',
     ],
     extras_require={'test': ['pytest'], 'ray': ['ray'], 'view': ['rerun-sdk==0.41.0']},
     zip_safe=False,
