@@ -6,6 +6,7 @@ weights, so conditions are paired. The tutors are simulated, no people take part
 the command is given again.
 
     python benchmarks/learning.py                              # all conditions but thesis-*, 24 seeds: hours
+    python benchmarks/learning.py --conditions guided-reactive guided-crossover guided-blind    # families of tutors
     python benchmarks/learning.py --conditions coached-expert --seeds 8
     python benchmarks/learning.py --conditions coached-expert --retention      # 20 further episodes without the tutor
     python benchmarks/learning.py --conditions coached-expert-10 autonomous-10 # ten episodes each, skilled or not
@@ -22,7 +23,8 @@ from typing import Any
 import numpy as np
 from scipy.stats import bootstrap
 from shared_control.env import SharedControlEnv
-from shared_control.teaching.profiles import profile
+from shared_control.teaching.families import FAMILIES
+from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import as_tested, evaluate
@@ -50,6 +52,10 @@ class Condition:
 
 
 CONDITIONS = {
+    'guided-expert': Condition('guided', 'expert', 10),
+    'guided-nobody': Condition('guided', None, 10),
+    **{f'guided-{family}': Condition('guided', family, 10) for family in FAMILIES},
+    **{f'coached-{family}': Condition('coached', family, 10) for family in FAMILIES},
     'coached-expert': Condition('coached', 'expert'),
     'coached-high': Condition('coached', 'high'),
     'coached-low': Condition('coached', 'low'),
@@ -83,7 +89,7 @@ def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) 
 def taught(condition: Condition, seed: int, folder: Path, limit: int | None) -> dict[str, Any]:
     """Teach a policy and test it."""
     training = train(
-        preset(condition.preset), None if condition.tutor is None else profile(condition.tutor), seed,
+        preset(condition.preset), None if condition.tutor is None else tutor_named(condition.tutor, seed), seed,
         min(condition.episodes, limit or condition.episodes), human_only=condition.human_only, folder=folder,
         evaluate_every=condition.evaluate_every, until_skilled=condition.until_skilled)
     return {

@@ -29,7 +29,7 @@ class CrossEntropyLearner:
     def __init__(self, name: str, task: Task, settings: CrossEntropySettings, seed: int):
         self.name, self.task, self.settings, self.seed = name, task, settings, seed
         self.episode = 0
-        shape = (len(task.axes), task.observation_size + 1)
+        shape = (len(task.axes), task.observed_size + 1)
         self._state = {
             'mean': np.zeros(shape), 'std': np.full(shape, settings.initial_std),
             'tried': np.zeros((0, *shape)), 'scores': np.zeros(0)}

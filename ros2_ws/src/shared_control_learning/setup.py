@@ -27,6 +27,7 @@ setup(
             'tutors = shared_control_learning.commands:add_tutors',
         ],
         'shared_control.learners': [
+            'guided = shared_control_learning.presets:GUIDED',
             'coached = shared_control_learning.presets:COACHED',
             'coached_network = shared_control_learning.presets:COACHED_NETWORK',
             'thesis = shared_control_learning.presets:THESIS_PPO',

@@ -9,14 +9,14 @@ from .plant import Plant
 from .rates import POLICY_PERIOD
 from .robot.model import RobotModel
 from .tasks.balance import BALANCE
-from .tasks.task import OBSERVATION_BOUND, Task
+from .tasks.task import OBSERVATION_BOUND, Observer, Task
 
 
 class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
     """One step is one policy period (20 ms).
 
     - Action, (k,) in [-1, 1]: the agent's moment is action * ``task.scale``, N m along the task's axes.
-    - Observation: the task's, float32.
+    - Observation: the task's, and the integrals of its position errors when the task ``integrates``; float32.
     - Reward: the sum of the task's terms, times ``task.reward_scale``.
     - Terminated when the task has failed; truncated after ``task.episode_seconds``.
     - ``info``: ``agent``, ``human``, ``applied`` (moments as they counted, (k,), N m), ``reward_terms`` (unscaled),
@@ -37,6 +37,7 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self._model = RobotModel(plant.spec)
         self._steps = round(task.episode_seconds / POLICY_PERIOD)
         self._step = 0
+        self._observer = Observer(task)
         self.observation_space = observation_space(task)
         self.action_space = action_space(task)
 
@@ -46,7 +47,8 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         super().reset(seed=seed)
         self._step = 0
         state = self.task.describe(self.plant.reset(seed), self._model)
-        return self.task.observe(state), {'state': state}
+        self._observer.reset()
+        return self._observer.observe(state, 0.0), {'state': state}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Apply ``action`` for 20 ms.
@@ -65,7 +67,8 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             'agent': plant_state.agent.copy(), 'human': plant_state.human.copy(), 'applied': plant_state.applied.copy(),
             'reward_terms': terms, 'state': state, 'on_tray': self.task.on_tray(state), 'failed': failed}
         reward = sum(terms.values()) * self.task.reward_scale
-        return self.task.observe(state), reward, failed, not failed and self._step >= self._steps, info
+        observation = self._observer.observe(state, POLICY_PERIOD)
+        return observation, reward, failed, not failed and self._step >= self._steps, info
 
     def close(self) -> None:
         """Let go of the plant."""
@@ -74,7 +77,7 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
 
 def observation_space(task: Task) -> gymnasium.spaces.Box:
     """What a learner of ``task`` sees."""
-    return gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (task.observation_size,), np.float32)
+    return gymnasium.spaces.Box(-OBSERVATION_BOUND, OBSERVATION_BOUND, (task.observed_size,), np.float32)
 
 
 def action_space(task: Task) -> gymnasium.spaces.Box:

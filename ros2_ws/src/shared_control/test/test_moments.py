@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from shared_control.control.moments import FADE_TIME, MomentSource, freshness, sum_moments
+from shared_control.control.sharing import WAYS, Sharing
 
 
 def test_a_command_counts_until_its_timeout_and_then_fades():
@@ -32,3 +33,25 @@ def test_the_sum_is_limited_about_each_axis():
     limit = np.array([20.0, 10.0])
     np.testing.assert_array_equal(sum_moments(np.array([3.0, -4.0]), np.array([5.0, 1.0]), limit), [8.0, -3.0])
     np.testing.assert_array_equal(sum_moments(np.array([30.0, -9.0]), np.array([5.0, -9.0]), limit), [20.0, -10.0])
+
+
+@pytest.mark.parametrize(('way', 'agent', 'human'), [
+    ('additive', [3.0, -4.0], [5.0, 0.0]), ('override', [0.0, 0.0], [5.0, 0.0]),
+    ('blend', [0.75 * 3.0, 0.75 * -4.0], [0.25 * 5.0, 0.0]), ('axes', [0.0, -4.0], [5.0, 0.0])])
+def test_what_counts_of_the_two_moments(way, agent, human):
+    parts = Sharing(way, 0.25).parts(np.array([3.0, -4.0]), np.array([5.0, 0.0]))
+    np.testing.assert_allclose(parts, [agent, human])
+
+
+@pytest.mark.parametrize('way', [way for way in WAYS if way != 'axes'])
+def test_a_person_who_lets_go_leaves_all_to_the_agent(way):
+    np.testing.assert_array_equal(Sharing(way).parts(np.array([3.0]), np.zeros(1)), [[3.0], [0.0]])
+
+
+def test_what_cannot_be_shared_is_refused():
+    with pytest.raises(ValueError, match='additive, override, blend, axes'):
+        Sharing('democratic')
+    with pytest.raises(ValueError, match='expected 0 to 1'):
+        Sharing('blend', 1.5)
+    with pytest.raises(ValueError, match='plate'):
+        Sharing('axes').check(1)

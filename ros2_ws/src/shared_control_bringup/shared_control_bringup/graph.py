@@ -72,7 +72,7 @@ def _of_the_task(settings: Settings) -> dict[str, Any]:
 NODES = (
     SessionNode('session_recorder_node', lambda s: {'output': str(s.folder.bag)}),
     SessionNode('torque_ctrl_node', lambda s: {
-        **_of_the_task(s.settings), **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
+        **_of_the_task(s.settings), 'sharing': s.settings.sharing, **BESIDE_A_SIMULATOR}, Role.CONTROL_LOOP),
     SessionNode('panda_sim_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'physics': s.settings.physics, 'seed': s.settings.seed},
         Role.CONTROL_LOOP, after='session_recorder_node'),

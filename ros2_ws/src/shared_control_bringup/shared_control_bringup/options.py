@@ -5,6 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from shared_control.control.sharing import WAYS
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_ros.host_and_port import host_and_port
@@ -32,6 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add('--task', 'what is learned (default: what the preset was made for; balance)', choices=names(TASKS))
     add('--preset', 'how it is learned (default: as the task is; coached)', choices=names(LEARNERS))
     add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
+    add('--sharing', f'what counts of the two moments (default: {default.sharing})', choices=WAYS)
     add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '
         f'{default.episodes})', type=int)
     add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float)

@@ -4,6 +4,7 @@ import math
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
+from shared_control.control.sharing import WAYS, Sharing
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 
@@ -44,6 +45,8 @@ class Settings:
     """Seed of ball starts, learner and simulated tutor."""
     page: tuple[str, int] = ('127.0.0.1', 8088)
     """Host and port of the page; port 0: any that is free."""
+    sharing: str = 'additive'
+    """What counts of the two moments: one of ``WAYS``."""
     screen: bool = True
     """Whether to show the lesson in the terminal."""
     earlier_tutors: tuple[str, ...] = ()
@@ -56,7 +59,7 @@ class Settings:
                                        ('--preset', self.preset, ('', *names(LEARNERS))),
                                        ('--physics', self.physics, names(WORLDS)),
                                        ('--tutor', self.tutor, TUTORS),
-                                       ('--profile', self.profile, TUTOR_NAMES)):
+                                       ('--profile', self.profile, TUTOR_NAMES), ('--sharing', self.sharing, WAYS)):
             if value not in choices:
                 raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
         if self.robot:
@@ -82,6 +85,7 @@ class Settings:
         """These settings with task and preset by name."""
         from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
         chosen = preset_for(self.task, self.preset)
+        Sharing(self.sharing).check(len(chosen.task.axes))
         return replace(self, task=chosen.task.name, preset=chosen.name)
 
     def with_options(self, given: dict[str, Any]) -> 'Settings':

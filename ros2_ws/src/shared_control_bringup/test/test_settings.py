@@ -18,7 +18,7 @@ def options(*arguments):
 @pytest.mark.parametrize('given', [
     {'episodes': -1}, {'episodes': 100_001}, {'minutes': 0.0}, {'minutes': -3.0}, {'minutes': math.nan},
     {'minutes': math.inf}, {'test_episodes': -1}, {'seed': -1}, {'seed': 2**31}, {'page': ('127.0.0.1', 65536)},
-    {'preset': 'magic'}, {'task': 'juggle'}, {'tutor': 'dog'}, {'profile': 'perfect'}])
+    {'preset': 'magic'}, {'task': 'juggle'}, {'tutor': 'dog'}, {'profile': 'perfect'}, {'sharing': 'half'}])
 def test_values_that_no_session_can_run_with_are_refused_by_name(given):
     with pytest.raises(ValueError, match='--' + next(iter(given)).replace('_', '-')):
         Settings(**given)
@@ -38,7 +38,7 @@ def test_an_option_of_another_tutor_is_refused(given):
 
 @pytest.mark.parametrize('settings', [
     Settings(), Settings(tutor='sim', profile='low', seed=7), Settings(tutor='page', page=('::1', 0), screen=False),
-    Settings(tutor='none', earlier_tutors=('keyboard',))])
+    Settings(tutor='none', earlier_tutors=('keyboard',), sharing='override')])
 def test_settings_are_read_back(settings):
     assert Settings.from_json(json.loads(json.dumps(settings.to_json()))) == settings
 
@@ -68,3 +68,9 @@ def test_who_taught_before_is_not_forgotten():
 def test_what_the_learner_was_made_with_cannot_change(given):
     with pytest.raises(ValueError, match=f'{given[0]} cannot change in a session that goes on'):
         Settings().resumed_with(options(*given))
+
+
+def test_axes_are_divided_where_there_are_two():
+    assert Settings(task='plate', sharing='axes').resolved().sharing == 'axes'
+    with pytest.raises(ValueError, match='plate'):
+        Settings(sharing='axes').resolved()

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from shared_control.control.sharing import WAYS
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
 
@@ -21,6 +22,8 @@ def add_train(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='(default: %(default)s)')
     parser.add_argument('--tutor', choices=(*TUTOR_NAMES, 'none'), help='simulated tutor (default: expert; none for a '
                         'preset that nobody teaches, and for a task that tutors do not know)')
+    parser.add_argument('--sharing', choices=WAYS, default='additive', help='what counts of the two moments (default: '
+                        '%(default)s)')
     parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
     parser.add_argument('--seed', type=int, default=0, help='of everything random (default: 0)')
     parser.add_argument('--episodes', type=int, default=20, help='at most so many (default: 20)')

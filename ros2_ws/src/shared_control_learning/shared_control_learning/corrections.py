@@ -27,7 +27,7 @@ class Corrections:
     @classmethod
     def none(cls, task: Task) -> 'Corrections':
         """Not one."""
-        return cls(*(torch.zeros(0, columns) for columns in (task.observation_size, len(task.axes), 1, 1)))
+        return cls(*(torch.zeros(0, columns) for columns in (task.observed_size, len(task.axes), 1, 1)))
 
     def tensors(self) -> dict[str, torch.Tensor]:
         """By name, for a policy file."""
@@ -46,7 +46,8 @@ class Corrections:
         return Corrections(*(getattr(self, f.name)[kept] for f in fields(self)))
 
 
-def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching: CoachingSettings) -> Corrections:
+def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching: CoachingSettings,
+                     ) -> tuple[Corrections, np.ndarray]:
     """The corrections of an episode.
 
     People react late, and some later than others: the moment held at t corrects what the policy did at t - d, for
@@ -56,6 +57,9 @@ def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching:
     Args:
         number: of the episode, from 1.
         means: what the policy does in the states of the episode without exploring, (steps, k).
+
+    Returns:
+        The corrections, and the step of the episode that each is for, (rows,).
     """
     steps = len(episode)
     later = [min(round(delay / POLICY_PERIOD), steps) for delay in coaching.delays]
@@ -66,5 +70,6 @@ def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching:
     labels = np.clip(means[:, np.newaxis] + coaching.gain * human / scale, -1.0, 1.0).mean(axis=1)
     weights = (human != 0.0).any(axis=2).mean(axis=1, keepdims=True)
     corrected = np.flatnonzero(weights)
-    return Corrections(*(torch.as_tensor(values[corrected].astype(np.float32)) for values in (
+    found = Corrections(*(torch.as_tensor(values[corrected].astype(np.float32)) for values in (
         np.array(episode.observations), labels, weights, np.full((steps, 1), number))))
+    return found, corrected

@@ -8,7 +8,7 @@ from shared_control.plugins import LEARNERS, TASKS, load
 from shared_control.tasks.balance import BALANCE, THESIS
 from shared_control.tasks.task import Task
 
-from .settings import CoachingSettings, PpoLearnerSettings, PpoSettings
+from .settings import CoachingSettings, GuidedSettings, PpoLearnerSettings, PpoSettings
 
 if TYPE_CHECKING:
     from .learner import Learner
@@ -42,6 +42,21 @@ class PpoPreset(Preset):
         return PpoLearner(self.name, self.task, self.settings, seed)
 
 
+@dataclass(frozen=True)
+class GuidedPreset(Preset):
+    """PPO, a model of what all moments did, and corrections that are judged by it."""
+
+    settings: GuidedSettings
+
+    def make(self, seed: int = 0) -> 'Learner':
+        """See :class:`Preset`."""
+        from .guided_learner import GuidedLearner
+        return GuidedLearner(self.name, self.task, self.settings, seed)
+
+
+GUIDED = GuidedPreset('guided', replace(BALANCE, integrates=True), GuidedSettings(
+    PpoSettings(initial_std=0.3, std_decay=0.93, learning_rate=1e-2, learning_rate_decay=0.93), CoachingSettings()))
+"""Learns from every moment what it did, whoever gave it."""
 COACHED = PpoPreset('coached', BALANCE, PpoLearnerSettings(
     PpoSettings(initial_std=0.4, std_decay=0.93, learning_rate=3e-2, learning_rate_decay=0.93), CoachingSettings()))
 """Corrections are labels, too."""

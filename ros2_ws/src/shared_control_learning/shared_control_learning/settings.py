@@ -87,3 +87,37 @@ class PpoLearnerSettings:
     ppo: PpoSettings
     coaching: CoachingSettings | None = None
     """None: PPO is told nothing of the human."""
+
+
+@dataclass(frozen=True)
+class ModelSettings:
+    """How a model of the transitions improves the policy (:mod:`shared_control_learning.guided_learner`)."""
+
+    __pydantic_config__: ClassVar = _STRICT
+
+    memory_episodes: Annotated[int, Field(ge=1, le=100)] = 20
+    """Transitions of so many episodes make the model."""
+    periods: Annotated[int, Field(ge=1, le=50)] = 5
+    """Policy periods of one imagined step, in which the moment is held."""
+    steps: Annotated[int, Field(ge=1, le=1000)] = 60
+    """Length of an imagined episode."""
+    batch: Annotated[int, Field(ge=1, le=10_000)] = 48
+    """Imagined episodes."""
+    iterations: Annotated[int, Field(ge=1, le=1000)] = 12
+    """Iterations of the optimiser (L-BFGS) after each episode."""
+    push: NotNegative = 0.6
+    """Standard deviation of a moment that pushes for good, another in each imagined episode, in actions: what an
+    integral is good for."""
+    restlessness: NotNegative = 0.5
+    """Cost of the squared change of the action from one imagined step to the next, in rewards."""
+    advice: NotNegative = 0.1
+    """Weight of the person's corrections beside the model's objective."""
+    foresight: Annotated[int, Field(ge=1, le=1000)] = 20
+    """Imagined steps over which a correction is judged."""
+
+
+@dataclass(frozen=True)
+class GuidedSettings(PpoLearnerSettings):
+    """PPO, a model of the transitions, and corrections that are judged by it."""
+
+    model: ModelSettings = ModelSettings()

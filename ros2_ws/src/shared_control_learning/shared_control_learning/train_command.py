@@ -6,6 +6,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from shared_control.control.sharing import Sharing
 from shared_control.run_folder import RunFolder
 from shared_control.teaching.picture import can_teach
 from shared_control.teaching.tutors import tutor_named
@@ -39,7 +40,8 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
             result = train(
                 chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.episodes,
                 until_skilled=args.until_skilled, human_only=args.human_only, physics=args.physics, folder=args.output,
-                tensorboard=True, evaluate_every=args.evaluate_every, callbacks=_Bar(bar, args.output))
+                tensorboard=True, evaluate_every=args.evaluate_every, sharing=Sharing(args.sharing),
+                callbacks=_Bar(bar, args.output))
     except KeyboardInterrupt:
         print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)
         return 130

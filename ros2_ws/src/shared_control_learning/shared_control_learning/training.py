@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, with_config
+from shared_control.control.sharing import ADDITIVE, Sharing
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
@@ -49,6 +50,8 @@ class TrainingRun:
     """The agent's moment was not applied (4.7)."""
     physics: str = 'bullet'
     """What it was taught and tested in."""
+    sharing: str = ADDITIVE.way
+    """What counted of the two moments (:mod:`shared_control.control.sharing`)."""
     tests: list[tuple[int, bool]] = field(default_factory=list)
     """After how many episodes the policy was tested alone, and whether it passed."""
     returns: list[float] = field(default_factory=list)
@@ -80,7 +83,7 @@ _TRAINING_RUN = TypeAdapter(TrainingRun)
 
 def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_skilled: bool = True,
           human_only: bool = False, physics: str = 'bullet', folder: Path | None = None, tensorboard: bool = False,
-          evaluate_every: int = 1, callbacks: Callbacks | None = None) -> TrainingRun:
+          evaluate_every: int = 1, sharing: Sharing = ADDITIVE, callbacks: Callbacks | None = None) -> TrainingRun:
     """Teach a policy in this process, by a simulated tutor or by nobody.
 
     A run that was stopped goes on from its folder, and ends as if it had never stopped.
@@ -96,21 +99,24 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
         folder: for policy, table and run; nothing is kept when None.
         tensorboard: write logs for TensorBoard there, too.
         evaluate_every: test after so many episodes each, 0: never.
+        sharing: what counts of the two moments.
         callbacks: called for the episodes, each after its test.
 
     Raises:
         TrainingError: ``folder`` holds another run.
         PolicyFileError: ``folder`` holds an unusable policy.
-        ValueError: there is a tutor, and the task has other axes than tutors know.
+        ValueError: there is a tutor, and the task has other axes than tutors know, or it cannot be shared like this.
     """
-    run = TrainingRun(preset.name, None if tutor is None else asdict(tutor), seed, human_only, physics)
+    sharing.check(len(preset.task.axes))
+    run = TrainingRun(
+        preset.name, None if tutor is None else asdict(tutor), seed, human_only, physics, sharing.way)
     learner = preset.make(seed)
     if tutor is not None and not can_teach(preset.task):
         raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     if folder is not None:
         learner, run = _resumed(learner, run, folder)
     person = None if tutor is None else make_tutor(tutor, preset.task, seed, learner.episode)
-    env = SharedControlEnv(LocalPlant(preset.task, person, physics), preset.task, human_only)
+    env = SharedControlEnv(LocalPlant(preset.task, person, physics, sharing=sharing), preset.task, human_only)
     test_env = SharedControlEnv(LocalPlant(preset.task, physics=physics), as_tested(preset.task))
     try:
         learn(learner, env, episodes, _Keeper(
@@ -146,7 +152,7 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
         _write_run(run, folder)  # from now on the folder is known as a run's, however early this one is killed
         return learner, run
     stored = read_run(folder)
-    for name in ('preset', 'tutor', 'seed', 'human_only', 'physics'):
+    for name in ('preset', 'tutor', 'seed', 'human_only', 'physics', 'sharing'):
         if getattr(stored, name) != getattr(run, name):
             raise TrainingError(f'{folder} holds a run with {name} {getattr(stored, name)!r}, asked for '
                                 f'{getattr(run, name)!r}: name another folder')

@@ -17,7 +17,7 @@ def warm_up(preset: Preset) -> None:
     """
     learner = preset.make()
     task = preset.task
-    seen = np.zeros(task.observation_size, np.float32)
+    seen = np.zeros(task.observed_size, np.float32)
     episode = Episode(task, last_observation=seen)
     still = SimpleNamespace(position_error=0.0, velocity=0.0)
     held = np.ones(len(task.axes))

@@ -58,7 +58,8 @@ def test_consent_practice_teaching_and_questions_in_this_order(study, answers):
     assert all(call[-2:] == ['--params-file', 'own.yaml'] for call in sessions.calls)
     assert sessions.calls[0][6:-2] == [
         '--preset', 'coached', '--physics', 'bullet', '--episodes', '1', '--test-episodes', '0']
-    assert sessions.calls[2][6:-2] == ['--preset', 'thesis', '--physics', 'bullet', '--minutes', '30.0']
+    assert sessions.calls[2][6:-2] == [
+        '--preset', 'thesis', '--physics', 'bullet', '--sharing', 'additive', '--minutes', '30.0']
     progress = Progress.of(person)
     assert progress.taught == ['coached', 'thesis'] and progress.consented
     assert progress.tlx['thesis'] == dict(zip(SCALES, (10, 20, 30, 40, 50, 60), strict=True))

@@ -5,6 +5,7 @@ from typing import Protocol
 import numpy as np
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
+from shared_control.control.sharing import ADDITIVE, Sharing
 from shared_control.plant import PlantState
 from shared_control.plugins import WORLDS, load
 from shared_control.rates import CONTROL_PERIOD, TICKS_PER_ACTION
@@ -35,10 +36,16 @@ class LocalPlant:
         person: who presses keys; nobody when None.
         physics: its name (entry point of the group ``shared_control.worlds``).
         robot: the robot; the Panda when not given.
+        sharing: what counts of the two moments.
+
+    Raises:
+        ValueError: the task cannot be shared like this.
     """
 
     def __init__(self, task: Task = BALANCE, person: Person | None = None, physics: str = 'bullet',
-                 robot: RobotSpec | None = None):
+                 robot: RobotSpec | None = None, sharing: Sharing = ADDITIVE):
+        sharing.check(len(task.axes))
+        self._sharing = sharing
         self.spec = carrying(panda() if robot is None else robot, task.scene)
         self.world: World = load(WORLDS, physics)(task.scene, CONTROL_PERIOD, self.spec)
         self.controller = ComputedTorqueController(RobotModel(self.spec), task.axes, dt=CONTROL_PERIOD)
@@ -66,6 +73,7 @@ class LocalPlant:
         """See :meth:`Plant.advance`."""
         assert self._state is not None, 'reset the plant first'
         human = self._none if self._person is None else self._person.moment(self._state)
+        agent, human = self._sharing.parts(agent, human)
         applied = sum_moments(agent, human, self._limit)
         for _ in range(TICKS_PER_ACTION):
             self.tick(applied)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
+from shared_control.control.sharing import Sharing
 from shared_control.env import SharedControlEnv
 from shared_control.tasks.balance import THESIS
 from shared_control_sim.local_plant import LocalPlant
@@ -75,3 +76,20 @@ def test_moments_are_told_apart_and_their_sum_is_limited():
     info = env.step(np.array([1.0]))[-1]
     assert (info['agent'][0], info['human'][0], info['applied'][0]) == (8.0, 15.0, 20.0)
     env.close()
+
+
+def test_override_leaves_the_robot_out_while_a_person_holds_a_moment():
+    class Holder:
+        def reset(self, seed):
+            self.steps = 0
+
+        def moment(self, state):
+            self.steps += 1
+            return np.array([5.0 if self.steps % 2 else 0.0])
+
+    env = SharedControlEnv(LocalPlant(person=Holder(), sharing=Sharing('override')))
+    env.reset(seed=1)
+    infos = [env.step(np.ones(1))[-1] for _ in range(4)]
+    env.close()
+    assert [(info['human'][0], info['agent'][0], info['applied'][0]) for info in infos] == [
+        (5.0, 0.0, 5.0), (0.0, 8.0, 8.0)] * 2

@@ -43,7 +43,7 @@ class Robot:
             for _ in range(100):
                 self.send(source, m_y)
                 self.tick_once()
-                if self.applied and self.applied[-1].wrench.torque.y == m_y:
+                if self.applied and bool(self.applied[-1].wrench.torque.y) == bool(m_y):
                     break
             else:
                 raise AssertionError('the controller does not hear its sources')
@@ -280,6 +280,17 @@ def type_of(request):
     return Trigger if request is None else SetBool
 
 
+@pytest.mark.parametrize(('sharing', 'used'), [('override', [0.5, 0.5, 0.0]), ('blend', [0.05, 0.125, -0.075])])
+def test_what_counts_of_the_moments_is_a_parameter(start_node, observer, sharing, used):
+    start_node('torque_ctrl_node', enabled=True, sharing=sharing, blend_weight=0.25)
+    robot = Robot(observer)
+    robot.now_ns += 1_000_000_000
+    robot.send(robot.human, 0.5)
+    robot.send(robot.agent, -0.1)
+    np.testing.assert_array_equal(robot.tick(), expected(used[0]))
+    assert robot.used() == pytest.approx(used)
+
+
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_leaves_cleanly(start_node, number):
     node = start_node('torque_ctrl_node')
@@ -292,6 +303,7 @@ def test_leaves_cleanly(start_node, number):
     ({'gains': 'stiff'}, "'gains' has no choice 'stiff'"),
     ({'command_timeout': 5.0}, "'command_timeout'"),
     ({'moment_limit': 'much'}, "'moment_limit'"),
+    ({'sharing': 'axes'}, 'sharing: axes are divided between person and robot only where a task has two'),
 ])
 def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('torque_ctrl_node', **parameters)

@@ -14,6 +14,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
+from shared_control.control.sharing import PERSONS_WEIGHT, WAYS, Sharing
 from shared_control.rates import CONTROL_PERIOD, POLICY_PERIOD
 from shared_control.robot.model import RobotModel
 from shared_control.robot.tray import carrying
@@ -21,7 +22,7 @@ from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.one_graph import claim
-from shared_control_ros.parameters import declare
+from shared_control_ros.parameters import ParameterError, declare
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
@@ -60,6 +61,14 @@ class TorqueCtrlNode:
             node, 'moment_limit', float(task.limit.max()), 'Bound of the sum of both moments about each axis.',
             unit='N m', minimum=0.0, maximum=200.0)
         self._moment_limit = np.full(len(task.axes), limit)
+        self._sharing = Sharing(
+            declare(node, 'sharing', 'additive', 'What counts of the two moments.', choices=WAYS),
+            declare(node, 'blend_weight', PERSONS_WEIGHT, "The person's weight with sharing 'blend'.", minimum=0.0,
+                    maximum=1.0))
+        try:
+            self._sharing.check(len(task.axes))
+        except ValueError as error:
+            raise ParameterError(f'sharing: {error}') from error
         compensates = declare(
             node, 'robot_compensates_gravity', False, 'The robot adds gravity itself: leave it out of the command.')
         horizon = declare(
@@ -149,6 +158,7 @@ class TorqueCtrlNode:
         self._human.update(now_ns)
         self._agent.update(now_ns)
         human, agent = self._human.moment(now_ns), self._agent.moment(now_ns)
+        agent, human = self._sharing.parts(agent, human)
         applied = sum_moments(agent, human, self._moment_limit)
         self._torque[:] = self._controller.torque(q, qd, effort, applied)
         self._command_publisher.publish(bytes(self._command))

@@ -50,6 +50,8 @@ class Task(ABC):
     reward_names: ClassVar[tuple[str, ...]]
     """The terms that :meth:`reward_terms` may have."""
     observation_size: ClassVar[int]
+    errors: ClassVar[tuple[int, ...]] = ()
+    """Which entries of the observation are position errors, so that their integral can be observed, too."""
     instruction: ClassVar[str] = 'Bring the ball to the centre of the tray and keep it there.'
     """What is asked of person and robot, a sentence."""
     preset: ClassVar[str] = 'coached'
@@ -61,6 +63,14 @@ class Task(ABC):
     """Length of an episode of teaching, s (3.1)."""
     reward_scale: float = 1.0
     """What the reward is multiplied by before a learner sees it."""
+    integrates: bool = False
+    """Whether the integral of the position errors is observed, too: a policy with it does away with what pushes the
+    ball to one side for good, such as a tray that sits askew."""
+
+    @property
+    def observed_size(self) -> int:
+        """How many numbers a learner sees: ``observation_size``, and an integral for each of ``errors``."""
+        return self.observation_size + (len(self.errors) if self.integrates else 0)
 
     @property
     @abstractmethod
@@ -117,6 +127,44 @@ SETTLED_SECONDS = 3.0
 def settled(track: np.ndarray) -> float:
     """Mean magnitude over the last 3 s of a track at the policy's rate."""
     return float(np.abs(track[-round(SETTLED_SECONDS / POLICY_PERIOD):]).mean())
+
+
+INTEGRAL_BOUND = 2.0
+"""Integrals of position errors, as they are observed (scaled) times s, are kept within this: so none winds up."""
+
+
+class Observer:
+    """What a learner sees of an episode: the task's observation and, when the task ``integrates``, the integrals.
+
+    Args:
+        task: whose observation it is.
+
+    Raises:
+        ValueError: it is to integrate, and its observation has no position errors.
+    """
+
+    def __init__(self, task: Task):
+        if task.integrates and not task.errors:
+            raise ValueError(f'the task {task.name} has no position errors to integrate: set integrates to false')
+        self._task = task
+        self.reset()
+
+    def reset(self) -> None:
+        """Begin an episode."""
+        self._integral = np.zeros(len(self._task.errors))
+
+    def observe(self, state: Any, elapsed: float) -> np.ndarray:
+        """(observed_size,), float32, ``elapsed`` s after the last one."""
+        seen = self._task.observe(state)
+        if not self._task.integrates:
+            return seen
+        self._integral = integrated(self._integral, seen[list(self._task.errors)], elapsed)
+        return np.append(seen, self._integral).astype(np.float32)
+
+
+def integrated(integral: np.ndarray, errors: np.ndarray, seconds: float) -> np.ndarray:
+    """``integral`` after ``errors`` (both as observed) have lasted ``seconds`` s."""
+    return np.clip(integral + seconds * errors, -INTEGRAL_BOUND, INTEGRAL_BOUND)
 
 
 class BallStarts:

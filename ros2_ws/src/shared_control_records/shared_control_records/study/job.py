@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.control.references import FREQUENCIES
+from shared_control.control.sharing import Sharing
 from shared_control.seeds import episode_seed
 from shared_control_learning.episode_table import TABLE_NAME, read_rows
 from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
@@ -50,7 +51,8 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     training = train(
         preset_for(job.condition.task, job.condition.preset),
         job.participant.tutor if job.condition.taught else None, job.participant.seed, job.condition.episodes,
-        until_skilled=True, physics=job.condition.physics, folder=path, evaluate_every=job.condition.evaluate_every)
+        until_skilled=True, physics=job.condition.physics, folder=path, evaluate_every=job.condition.evaluate_every,
+        sharing=Sharing(job.condition.sharing))
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
         episodes=table(path / TABLE_NAME), tests=run_tests(plan, job, path / POLICY_NAME),

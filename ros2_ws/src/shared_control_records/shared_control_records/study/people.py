@@ -73,7 +73,7 @@ def _learning(condition: Condition) -> list[str]:
 
 
 def _teaching(condition: Condition, people: People) -> list[str]:
-    return [*_learning(condition), '--minutes', str(people.minutes)]
+    return [*_learning(condition), '--sharing', condition.sharing, '--minutes', str(people.minutes)]
 
 
 def _run(path: Path, arguments: list[str], participant: Participant, people: People, run_session: RunSession,

@@ -91,6 +91,8 @@ class Learning(Section):
     """What it is trained in (an entry point of ``shared_control.worlds``)."""
     tested_in: Annotated[Name, AfterValidator(_known_physics)] | None = None
     """What the policy is tested in at the end; as trained when the plan does not say."""
+    sharing: Literal['additive', 'override', 'blend', 'axes'] = 'additive'
+    """What counts of the two moments (:mod:`shared_control.control.sharing`)."""
 
 
 class People(Section):

@@ -31,6 +31,7 @@ class Detour(Plate):
     """
 
     name: ClassVar[str] = 'detour'
+    errors: ClassVar[tuple[int, ...]] = ()  # the middle of the plate is not where the ball should be
     instruction: ClassVar[str] = 'Bring the ball round the bar to the goal and keep it there.'
     preset: ClassVar[str] = 'coached_network'
     scene: ClassVar[Scene] = DETOUR_SCENE

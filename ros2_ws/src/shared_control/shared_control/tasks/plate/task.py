@@ -56,6 +56,7 @@ class Plate(Task):
     scene: ClassVar[Scene] = PLATE_SCENE
     reward_names: ClassVar[tuple[str, ...]] = ('R_alpha', 'R_V', 'R_P', 'R_Pe', 'fall')
     observation_size: ClassVar[int] = 6
+    errors: ClassVar[tuple[int, ...]] = (0, 1)
     velocity_max: ClassVar[float] = 0.03
     """Mean speed at the end of a success, m/s; that of the distance is the scene's ``goal_radius``."""
     start: ClassVar[tuple[tuple[float, float], tuple[float, float]]] = ((-0.13, 0.13), (-0.13, 0.13))

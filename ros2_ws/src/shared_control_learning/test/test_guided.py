@@ -1,0 +1,176 @@
+"""The learner that makes a model of what all moments did."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+from shared_control.env import SharedControlEnv
+from shared_control.rates import POLICY_PERIOD
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.detour import Detour
+from shared_control.tasks.plate import Plate
+from shared_control.tasks.task import INTEGRAL_BOUND, Observer
+from shared_control.teaching.tutors import tutor_named
+from shared_control_learning.dynamics import Transitions, fit_dynamics
+from shared_control_learning.episode import Episode
+from shared_control_learning.evaluation.evaluate import as_tested, evaluate
+from shared_control_learning.policy_file import load_policy, save_policy
+from shared_control_learning.presets import GUIDED
+from shared_control_learning.training import train
+from shared_control_learning.warm_up import warm_up
+from shared_control_sim.local_plant import LocalPlant
+
+GAIN, WALL = 0.05, 1.86
+QUICK = replace(GUIDED, settings=replace(GUIDED.settings, model=replace(
+    GUIDED.settings.model, iterations=4, batch=8, steps=20)))
+
+
+def rolling(task, choose, seed, steps=600, human=None):
+    """An episode of balls between walls, one along each axis: tilt follows the moment, velocity the tilt."""
+    random = np.random.default_rng(seed)
+    axes = len(task.axes)
+    error, velocity, tilt = random.uniform(-1.5, 1.5, axes), np.zeros(axes), np.zeros(axes)
+    observer, episode = Observer(task), Episode(task)
+
+    def seen():
+        raw = np.array([*error, *velocity, *tilt], np.float32)
+        episode.last_observation = np.append(raw, observer._integral).astype(np.float32) if task.integrates else raw
+        return episode.last_observation
+
+    for number in range(steps):
+        observation = seen()
+        action = choose(observation)
+        held = np.zeros(axes) if human is None else np.full(axes, human(number, error)) / task.scale
+        applied = np.clip(action + held, -2.5, 2.5)
+        tilt = tilt + 0.15 * (0.8 * applied + 0.1 - tilt)
+        velocity = velocity + GAIN * tilt
+        error = error - 1.5 * POLICY_PERIOD * velocity
+        hit = np.abs(error) > WALL
+        error, velocity = np.clip(error, -WALL, WALL), np.where(hit, 0.0, velocity)
+        if task.integrates:
+            observer._integral = np.clip(observer._integral + POLICY_PERIOD * error, -INTEGRAL_BOUND, INTEGRAL_BOUND)
+        reward = float(-0.03 * (error ** 2).sum())
+        episode.add(observation, np.float32(action), reward, {
+            'human': held * task.scale, 'agent': action * task.scale, 'applied': applied * task.scale, 'failed': False,
+            'reward_terms': {}, 'state': SimpleNamespace(position_error=float(np.abs(error).max()), velocity=0.0),
+            'on_tray': None})
+    seen()
+    return episode
+
+
+@pytest.mark.parametrize('task', [BALANCE, Plate()], ids=lambda task: task.name)
+def test_the_model_is_that_of_the_free_ball_although_walls_hold_it_a_good_part_of_the_time(task):
+    random = np.random.default_rng(1)
+    known = Transitions(task, 20)
+    episode = rolling(task, lambda _: random.normal(size=len(task.axes)) * 0.6, seed=1)
+    at_the_wall = np.mean([abs(error) >= WALL for error in episode.position_error])
+    assert at_the_wall > 0.2
+    known.add(episode, 1)
+    model = fit_dynamics(known, periods=1)
+    n, axes = known.size, len(task.axes)
+    along = slice(2 * axes, 3 * axes)
+    velocities = model.ab[:, axes:2 * axes]
+    # v' = v + GAIN (tilt + 0.15 (0.8 u + 0.1 - tilt))
+    assert torch.allclose(velocities[along], torch.eye(axes) * GAIN * 0.85, atol=4e-3)
+    assert torch.allclose(velocities[-axes:], torch.eye(axes) * GAIN * 0.12, atol=2e-3)
+    assert known.states.shape == (600, 2 * n + axes)
+
+
+@pytest.mark.parametrize('human', [
+    None, lambda number, error: -10.0 * np.sign(error[0]), lambda number, error: 10.0 * (number // 40 % 2)],
+    ids=['nobody', 'an adversary', 'a sham'])
+def test_whoever_gives_moments_two_episodes_teach_it_to_balance_alone(human):
+    learner = GUIDED.make(3)
+    for number in range(2):
+        learner.begin()
+        learner.learn_from(rolling(learner.task, learner.explore, seed=number, human=human))
+    alone = rolling(learner.task, learner.act, seed=9)
+    assert np.abs(alone.position_error[-150:]).max() < 0.15
+
+
+def test_its_integral_does_away_with_a_push_that_it_never_met():
+    learner = GUIDED.make(3)
+    for number in range(3):
+        learner.begin()
+        learner.learn_from(rolling(learner.task, learner.explore, seed=number))
+    pushed = rolling(learner.task, lambda seen: learner.act(seen) + 0.3, seed=9)
+    assert np.abs(pushed.position_error[-100:]).mean() < 0.2
+
+
+def test_corrections_that_were_not_worth_it_are_not_believed():
+    def believed(human):
+        learner = GUIDED.make(3)
+        for number in range(2):
+            learner.begin()
+            learner.learn_from(rolling(learner.task, learner.explore, seed=number))
+        learner.begin()
+        figures = learner.learn_from(rolling(learner.task, lambda seen: 0.1 * learner.act(seen), seed=5, human=human))
+        return figures['train/corrections'] / figures['train/corrections_offered']
+
+    assert believed(lambda number, error: -10.0 * np.sign(error[0])) < 0.1
+
+
+def test_it_goes_on_as_if_it_had_never_stopped(tmp_path):
+    def teach(learner, number):
+        learner.begin()
+        learner.learn_from(rolling(learner.task, learner.explore, seed=number, steps=200, human=lambda n, e: 5.0))
+
+    through, stopped = QUICK.make(1), QUICK.make(1)
+    for learner in (through, stopped):
+        teach(learner, 0)
+    save_policy(stopped, tmp_path / 'policy.safetensors')
+    stopped = load_policy(tmp_path / 'policy.safetensors')
+    for learner in (through, stopped):
+        teach(learner, 1)
+    for name, tensor in through.tensors().items():
+        assert torch.equal(tensor, stopped.tensors()[name]), name
+
+
+def test_tensors_of_another_shape_are_refused():
+    learner = QUICK.make(1)
+    tensors = learner.tensors() | {'transitions.moments': torch.zeros(3, 2)}
+    with pytest.raises(ValueError, match=r'transitions\.moments'):
+        learner.restore(tensors)
+
+
+def test_old_episodes_are_forgotten():
+    known = Transitions(BALANCE, 2)
+    for number in range(1, 5):
+        known.add(rolling(BALANCE, lambda _: np.zeros(1), seed=number, steps=50), number)
+    assert sorted(set(known.episodes[:, 0])) == [3.0, 4.0]
+
+
+def test_the_integral_is_observed_bounded_and_begins_anew():
+    task = replace(BALANCE, integrates=True)
+    observer = Observer(task)
+    state = SimpleNamespace(position_error=0.1, velocity=0.0, pitch=0.0)
+    assert observer.observe(state, 0.0).tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert observer.observe(state, 0.5).tolist() == [1.0, 0.0, 0.0, 0.5]
+    assert observer.observe(state, 100.0)[-1] == INTEGRAL_BOUND
+    observer.reset()
+    assert observer.observe(state, 0.0)[-1] == 0.0
+    with pytest.raises(ValueError, match='detour has no position errors to integrate'):
+        Observer(Detour(integrates=True))
+
+
+def test_balances_in_the_simulator_after_two_episodes_with_an_adversary(tmp_path):
+    train(GUIDED, tutor_named('contrary', 0), seed=0, episodes=2, evaluate_every=0, folder=tmp_path)
+    env = SharedControlEnv(LocalPlant(GUIDED.task), as_tested(GUIDED.task))
+    tested = evaluate(load_policy(tmp_path / 'policy.safetensors').act, env, episodes=4)
+    env.close()
+    assert tested.successes == 4
+
+
+def test_an_episode_in_which_nothing_happened_changes_nothing_for_the_worse():
+    warm_up(GUIDED)
+    learner = QUICK.make(1)
+    learner.begin()
+    episode = rolling(learner.task, lambda _: np.zeros(1), seed=1, steps=130)
+    for values in (episode.observations, episode.applied):
+        values[:] = [np.zeros_like(value) for value in values]
+    episode.last_observation = np.zeros(4, np.float32)
+    episode.rewards[:] = [0.0] * 130
+    learner.learn_from(episode)
+    assert all(bool(torch.isfinite(tensor).all()) for tensor in learner.tensors().values())
