@@ -21,6 +21,7 @@ myst_heading_anchors = 3
 autodoc_member_order = 'bysource'
 autodoc_typehints = 'description'
 autodoc_preserve_defaults = True
+autodoc_mock_imports = ['rerun']  # an extra that documentation does not need
 suppress_warnings = ['misc.highlighting_failure']  # shell lines with <placeholders>
 
 generate.write(HERE / 'reference' / 'generated')

@@ -10,13 +10,12 @@ import json
 import sys
 from pathlib import Path
 
-import torch
-from lerobot.configs.policies import PreTrainedConfig
-from lerobot.policies.factory import get_policy_class, make_pre_post_processors
-
 
 def main(folder: str) -> None:
     """Serve until stdin ends."""
+    import torch
+    from lerobot.configs.policies import PreTrainedConfig
+    from lerobot.policies.factory import get_policy_class, make_pre_post_processors
     torch.set_num_threads(1)
     config = PreTrainedConfig.from_pretrained(Path(folder))
     config.device = 'cpu'
