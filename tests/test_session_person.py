@@ -1,9 +1,11 @@
 """Sessions as a person starts them: real keys in a real pty, and what is said when something is wrong."""
 
 import signal
+import time
 
 import pytest
 from shared_control_records.bag.reader import read_bag
+from teleop_key_node.keyboard import HeldKeys
 
 
 def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summary_of):
@@ -15,6 +17,7 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
     session.expect('time left')
     session.type(b'\x1b[D')
     session.expect('+5.0')
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)  # sooner it would be the terminal's repetition
     session.type(b'a')
     session.expect('+10.0')
     session.expect('left side down')

@@ -51,6 +51,13 @@ def test_a_missing_command(recording, tmp_path):
         '/effort_controller/commands: 3 ticks with a torque that was not commanded; the first after 1.001 s']
 
 
+def test_states_that_the_recorder_hears_long_after_their_answers(recording, tmp_path):
+    late_ns = made.START_NS + 150 * MS
+    recording.messages = [(topic, max(at, late_ns) if topic == contract.JOINT_STATES else at, sent)
+                          for topic, at, sent in recording.messages]
+    assert findings(recording, tmp_path) == []
+
+
 @pytest.mark.parametrize('topic', made.APPLIED)
 def test_a_missing_applied_moment(recording, tmp_path, topic):
     recording.drop(topic, 100, 4)
