@@ -2,7 +2,7 @@
 
     world/arm/LINK, world/tray, world/ball       what there is to see, base frame, m
     world/moments/human, agent, applied          the moment at the tray as an arrow along its axis
-    moments/m_y/human, agent, applied            N m, a chart for each axis of the task
+    moments/AXIS/human, agent, applied           N m, a chart for each axis of the task
     ball/position_error, training/...            charts
     log/phase, log/keys                          lines of text
 """
