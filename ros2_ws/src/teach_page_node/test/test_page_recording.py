@@ -37,7 +37,7 @@ def test_keys_are_lit_while_they_were_pressed(bag):
 
 def test_both_ends_can_be_seen(bag):
     recording = Recording(bag)
-    assert recording.length == pytest.approx(4.0, abs=0.01)
+    assert recording.length == pytest.approx(4.0, abs=0.02)  # joint states are kept every 10 ms
     assert recording.picture(0.0).history.returns == []
     assert recording.picture(recording.length).episode == 2
 
@@ -46,7 +46,7 @@ def test_a_gap_between_two_runs_is_shortened(tmp_path):
     made = record([lesson(seed=1)])
     made.messages += record([lesson(seed=2)], start_ns=made.messages[-1][1] + 3_600_000_000_000).messages
     recording = Recording(read_bag(made.write(tmp_path / 'bag')))
-    assert recording.length == pytest.approx(6.0, abs=0.01)
+    assert recording.length == pytest.approx(6.0, abs=0.03)
     assert recording.picture(3.0).agent is None, 'nobody spoke in the gap'
     assert recording.picture(5.0).agent is not None
 
