@@ -54,7 +54,12 @@ def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_p
     assert NODES.keys() == allowed.keys() - {'operator', 'session'}, 'add new nodes to shared_control_ros.interfaces'
     NODES['session_recorder_node'] = {'output': tmp_path / 'bag'}
     NODES['panda_bridge_node'] = {'hostname': 'here'}
-    running = [start_node(name, **parameters) for name, parameters in NODES.items()]
+    running = []
+    for name, parameters in NODES.items():
+        # Three of them are robots: with its locks in a folder of its own, none refuses to be the second of its domain.
+        (tmp_path / name).mkdir()
+        monkeypatch.setenv('TMPDIR', str(tmp_path / name))
+        running.append(start_node(name, **parameters))
     for node in running:
         node.wait_for_log('ready', 60.0)
     waits = Waits([], print)  # of a session

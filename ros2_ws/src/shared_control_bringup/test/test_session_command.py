@@ -120,7 +120,7 @@ def test_a_file_with_a_few_values_is_laid_over_the_defaults(session, few, tmp_pa
     assert session('--tutor', 'sim', '--output', folder.path, '--params-file', few, '--seed', 3) == 0
     assert folder.given_parameters.read_text() == few.read_text()
     assert folder.ros_parameters('panda_sim_node') == {
-        **load()['panda_sim_node'], 'task': 'balance', 'paced': False, 'seed': 3}
+        **load()['panda_sim_node'], 'task': 'balance', 'physics': 'bullet', 'paced': False, 'seed': 3}
     assert folder.ros_parameters('torque_ctrl_node')['enabled'] is True, 'beside a simulator'
     assert folder.ros_parameters('ppo_agent_node')['test_episodes'] == load()['ppo_agent_node']['test_episodes']
 

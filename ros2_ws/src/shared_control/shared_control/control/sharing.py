@@ -1,8 +1,10 @@
-"""Ways of sharing: what of the person's and of the agent's moment counts."""
+"""Ways of sharing: what of the person's and of the agent's moment counts. Quick to load, for options."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 WAYS = ('additive', 'override', 'blend', 'axes')
 """``additive``: both count (the thesis, 3.3). ``override``: while the person holds a moment, it alone counts (as in
@@ -42,15 +44,16 @@ class Sharing:
             raise ValueError('axes are divided between person and robot only where a task has two: choose another task '
                              f'(plate), or another way of sharing ({", ".join(way for way in WAYS if way != "axes")})')
 
-    def parts(self, agent: np.ndarray, human: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def parts(self, agent: 'np.ndarray', human: 'np.ndarray') -> 'tuple[np.ndarray, np.ndarray]':
         """What counts of the agent's and of the human's moment; all (k,), N m."""
         if self.way == 'axes':
-            persons = np.arange(len(human)) == 0
-            return np.where(persons, 0.0, agent), np.where(persons, human, 0.0)
+            agent, human = agent.copy(), human.copy()
+            agent[0] = human[1:] = 0.0
+            return agent, human
         if self.way == 'additive' or not human.any():
             return agent, human
         if self.way == 'override':
-            return np.zeros_like(agent), human
+            return 0.0 * agent, human
         return (1.0 - self.weight) * agent, self.weight * human
 
 
