@@ -21,6 +21,7 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
     session.type(b'a')
     session.expect('+10.0')
     session.expect('left side down')
+    time.sleep(0.5)  # the moment is held for a while
     session.type(b'q')
     session.expect('TEST')
     session.process.wait(120)
