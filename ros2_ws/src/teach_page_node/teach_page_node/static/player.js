@@ -36,4 +36,8 @@ export function showPlayer(newReplay) {
   if (document.activeElement !== speed) speed.value = String(replay.speed);
 }
 
-const clock = (seconds) => `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")}`;
+// Joint states are kept every 10 ms: a recording of 12 s ends a little before that.
+const clock = (seconds) => {
+  const whole = Math.floor(seconds + 0.05);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+};
