@@ -1,17 +1,13 @@
 """The teaching page in a real browser, with a whole session on the live graph behind it, and with a recorded one."""
 
-import re
 import signal
-import subprocess
-import sys
 
 import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import alert_is_present
 from selenium.webdriver.support.wait import WebDriverWait
 from shared_control_ros import contract
-from shared_control_ros.processes import leave_with_the_parent
-from shared_control_testing.page import Browser
+from shared_control_testing.page import Browser, serve
 from shared_control_testing.sessions import lesson, record
 
 pytestmark = pytest.mark.alone
@@ -26,17 +22,8 @@ SMOOTHS = 'return getElement(teachPage.scene).renderer.getContext().getContextAt
 def session(domain_id, tmp_path_factory):
     """``shared-control session --tutor page``, practising; its process and the page's address."""
     folder = tmp_path_factory.mktemp('session') / 'session'
-    process = subprocess.Popen(
-        [sys.executable, '-m', 'shared_control', 'session', '--tutor', 'page', '--page', '127.0.0.1:0',
-         '--test-episodes', '0', '--output', str(folder)],
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        preexec_fn=leave_with_the_parent)
-    said = ''
-    while not (found := re.search(r'Teach here: (http://127\S+)', said)):
-        line = process.stdout.readline()
-        assert line, f'the session ended: {said}'
-        said += line
-    yield process, found[1]
+    process, address = serve('session', '--tutor', 'page', '--test-episodes', '0', '--output', str(folder))
+    yield process, address
     if process.poll() is None:
         process.send_signal(signal.SIGTERM)
     process.communicate(timeout=60)
@@ -184,15 +171,8 @@ class TestASessionOnThePage:
 def replay(tmp_path):
     """The address of a replay of two episodes of 6 s."""
     bag = record([lesson(300, seed=1), lesson(300, seed=2)]).write(tmp_path / 'bag')
-    process = subprocess.Popen(
-        [sys.executable, '-m', 'shared_control', 'replay', str(bag), '--page', '127.0.0.1:0'],
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, preexec_fn=leave_with_the_parent)
-    said = ''
-    while not (found := re.search(r'Watch here: (http://127\S+)', said)):
-        line = process.stdout.readline()
-        assert line, f'the replay ended: {said}'
-        said += line
-    yield found[1]
+    process, address = serve('replay', str(bag))
+    yield address
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=20)
     assert process.returncode == 130

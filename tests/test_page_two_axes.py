@@ -2,14 +2,11 @@
 
 import re
 import signal
-import subprocess
-import sys
 
 import pytest
 from selenium.webdriver.common.keys import Keys
 from shared_control_ros import contract
-from shared_control_ros.processes import leave_with_the_parent
-from shared_control_testing.page import Browser
+from shared_control_testing.page import Browser, serve
 
 pytestmark = pytest.mark.alone
 
@@ -21,17 +18,9 @@ ROLLED = 30
 def address(domain_id, tmp_path_factory):
     """``shared-control session --task detour --tutor page``, practising."""
     folder = tmp_path_factory.mktemp('session') / 'session'
-    process = subprocess.Popen(
-        [sys.executable, '-m', 'shared_control', 'session', '--task', 'detour', '--tutor', 'page', '--page',
-         '127.0.0.1:0', '--test-episodes', '0', '--output', str(folder)],
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-        preexec_fn=leave_with_the_parent)
-    said = ''
-    while not (found := re.search(r'Teach here: (http://127\S+)', said)):
-        line = process.stdout.readline()
-        assert line, f'the session ended: {said}'
-        said += line
-    yield found[1]
+    process, address = serve('session', '--task', 'detour', '--tutor', 'page', '--test-episodes', '0', '--output',
+                             str(folder))
+    yield address
     process.send_signal(signal.SIGTERM)
     process.communicate(timeout=120)
 

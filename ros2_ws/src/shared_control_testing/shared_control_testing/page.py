@@ -1,6 +1,9 @@
 """The page in a real browser, for tests and measurements: headless Chromium, drawing by software."""
 
+import re
 import shutil
+import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -8,6 +11,7 @@ from typing import Any
 
 from selenium.webdriver import ActionChains, Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
+from shared_control_ros.processes import leave_with_the_parent
 
 _BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 _OPTIONS = (
@@ -18,6 +22,20 @@ _BALL_ON_SCREEN = """
     const view = getElement(teachPage.scene);
     const ball = [...view.objects.values()].find(({mesh}) => mesh?.name === 'ball').mesh;
     return (ball.getWorldPosition(ball.position.clone()).project(view.camera).x + 1) / 2 * view.$el.clientWidth"""
+
+
+def serve(*arguments: str) -> tuple[subprocess.Popen[str], str]:
+    """Start ``shared-control`` with ``arguments`` that serve a page; the process, and the address that it prints."""
+    process = subprocess.Popen(
+        [sys.executable, '-m', 'shared_control', *arguments, '--page', '127.0.0.1:0'], stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=leave_with_the_parent)
+    assert process.stdout is not None
+    said = ''
+    while not (found := re.search(r'(?:Teach|Watch) here: (http://127\S+)', said)):
+        line = process.stdout.readline()
+        assert line, f'{arguments[0]} ended: {said}'
+        said += line
+    return process, found[1]
 
 
 class Browser:

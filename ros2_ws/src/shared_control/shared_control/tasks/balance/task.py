@@ -10,6 +10,7 @@ from ...keys import LEFT_AND_RIGHT, KeyMap
 from ...plant import PlantState
 from ...robot.model import RobotModel, manipulability, pitch
 from ...scene import Box, Scene
+from ..settings_check import check_numbers
 from ..task import OBSERVATION_BOUND, Task, settled
 
 BALL_START_RANGE = (-0.6, -0.3)
@@ -90,18 +91,15 @@ class Balance(Task):
     """Mean |velocity| of a success, m/s; that of the position error is the scene's ``goal_radius``."""
 
     def __post_init__(self) -> None:
-        positive = {name: getattr(self, name) for name in (
-            'episode_seconds', 'action_scale', 'moment_limit', 'reward_scale', 'position_error_max_squared')}
-        positive |= {f'observation_scales[{number}]': scale
-                     for number, scale in enumerate(self.observation_scales or ())}
-        for name, value in positive.items():
-            if not 0.0 < value < math.inf:
-                raise ValueError(f'{name} is {value}, expected a finite number above 0')
-        for name in ('weight_pitch', 'weight_velocity', 'weight_margin', 'weight_position', 'weight_manipulability'):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise ValueError(f'{name} is {getattr(self, name)}, expected a finite number of at least 0')
-        if not -math.inf < self.rate_centre <= 0.0:
-            raise ValueError(f'rate_centre is {self.rate_centre}, expected a finite number of at most 0')
+        for expected, names in (
+                ('above 0', ('episode_seconds', 'action_scale', 'moment_limit', 'reward_scale',
+                             'position_error_max_squared')),
+                ('of at least 0', ('weight_pitch', 'weight_velocity', 'weight_margin', 'weight_position',
+                                   'weight_manipulability')),
+                ('of at most 0', ('rate_centre',))):
+            check_numbers(expected, ((name, getattr(self, name)) for name in names))
+        check_numbers('above 0', ((f'observation_scales[{number}]', scale)
+                                  for number, scale in enumerate(self.observation_scales or ())))
 
     @property
     def scale(self) -> np.ndarray:

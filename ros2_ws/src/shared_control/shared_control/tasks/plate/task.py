@@ -10,6 +10,7 @@ from ...keys import Key, KeyMap
 from ...plant import PlantState
 from ...robot.model import RobotModel, manipulability
 from ...scene import Scene
+from ..settings_check import check_numbers
 from ..task import OBSERVATION_BOUND, Task, settled
 from .scene import PLATE_SCENE
 
@@ -81,15 +82,12 @@ class Plate(Task):
     """(37)"""
 
     def __post_init__(self) -> None:
-        for name in ('episode_seconds', 'action_scale', 'moment_limit', 'reward_scale', 'position_error_max_squared'):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise ValueError(f'{name} is {getattr(self, name)}, expected a finite number above 0')
-        for name in ('weight_tilt', 'weight_velocity', 'weight_position'):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise ValueError(f'{name} is {getattr(self, name)}, expected a finite number of at least 0')
-        for name in ('fall_reward', 'rate_centre'):
-            if not -math.inf < getattr(self, name) <= 0.0:
-                raise ValueError(f'{name} is {getattr(self, name)}, expected a finite number of at most 0')
+        for expected, names in (
+                ('above 0', ('episode_seconds', 'action_scale', 'moment_limit', 'reward_scale',
+                             'position_error_max_squared')),
+                ('of at least 0', ('weight_tilt', 'weight_velocity', 'weight_position')),
+                ('of at most 0', ('fall_reward', 'rate_centre'))):
+            check_numbers(expected, ((name, getattr(self, name)) for name in names))
 
     @property
     def scale(self) -> np.ndarray:
