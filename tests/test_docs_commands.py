@@ -49,7 +49,7 @@ def run_by_a_test():
     """Keys of what tests start: nodes and subcommands by name, modules by ``-m``, what .ci/run makes."""
     text = '\n'.join(path.read_text() for path in TESTS)
     nodes = set(re.findall(r'[\'"](\w+_node)[\'"]', text))
-    subcommands = {f'shared-control {name}' for name in re.findall(r"'shared[-_]control', '(\w+)'", text)}
+    subcommands = {f'shared-control {name}' for name in re.findall(r"(?:'shared[-_]control', |\bserve\()'(\w+)'", text)}
     modules = {f'python -m {name}' for name in re.findall(r"'-m', '([\w.]+)'", text)}
     made = {f'make {name}' for name in re.findall(r'^make (\w+)', (ROOT / '.ci' / 'run').read_text(), re.MULTILINE)}
     return nodes | subcommands | modules | made

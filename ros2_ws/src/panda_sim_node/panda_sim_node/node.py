@@ -118,8 +118,12 @@ class PandaSimNode:
         self._background.poll()
         self._pushes.update(self._tick)
 
+    @property
+    def _stamp_ns(self) -> int:
+        return self._start_ns + self._tick * PERIOD_NS
+
     def _publish(self) -> None:
-        self._states.publish(self._tick, self._start_ns + self._tick * PERIOD_NS, self._world.effort)
+        self._states.publish(self._tick, self._stamp_ns, self._world.effort)
 
     # -- lockstep --------------------------------------------------------------------------------------------------
 
@@ -141,7 +145,7 @@ class PandaSimNode:
         began = time.monotonic()
         while not (stop.requested or self._paused):
             message = self._commands.wait(REPEAT_AFTER)
-            torque = None if message is None else self._commands.read(message)
+            torque = None if message is None else self._commands.read(message, self._stamp_ns)
             if torque is not None:
                 return torque
             if message is None:

@@ -11,6 +11,7 @@ from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts
 from shared_control_ros import contract
 from shared_control_ros.stamps import to_ns
+from shared_control_ros.torque_command import torque_command
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool, Trigger
 
@@ -127,6 +128,23 @@ class TestLockstepAnsweredByHand:
         observer.spin(lambda: stamps_ms(states)[-1] == before + 1)
         assert list(states[-1].effort) == [87.0] * 4 + [12.0] * 3
         node.wait_for_log('until the controller answers')
+
+    def test_an_answer_that_comes_twice_is_not_that_of_the_next_tick(self, start_node, observer):
+        states = observer.listen(contract.JOINT_STATES)
+        commands = observer.publisher(contract.EFFORT_COMMANDS)
+        start_node('panda_sim_node', paced=False)
+        observer.spin(lambda: states and commands.get_subscription_count() == 1)
+        torque = list(states[-1].effort)
+        tick = to_ns(states[-1].header.stamp)
+        for _ in range(2):
+            commands.publish(torque_command([value + 0.25 for value in torque], tick))
+        observer.spin(lambda: to_ns(states[-1].header.stamp) == tick + 1_000_000)
+        repeated = len(states)
+        observer.spin(lambda: len(states) > repeated + 2, what='the second tick, again and again')
+        assert to_ns(states[-1].header.stamp) == tick + 1_000_000
+        commands.publish(torque_command(torque, tick + 1_000_000))
+        observer.spin(lambda: to_ns(states[-1].header.stamp) == tick + 2_000_000)
+        assert list(states[-1].effort) == torque
 
 
 def test_free_running_goes_on_without_torques_on_its_brakes(start_node, observer):

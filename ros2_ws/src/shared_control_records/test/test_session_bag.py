@@ -102,6 +102,16 @@ def test_a_bag_of_several_blocks_with_odd_messages(recording, tmp_path, monkeypa
     assert bag.commands.torque.shape == (1999,)
 
 
+def test_commands_are_decoded_a_block_at_a_time(recording, tmp_path, monkeypatch):
+    """Though each names the tick that it answers."""
+    alone = []
+    one = bulk.BulkTopic._decode_one
+    monkeypatch.setattr(bulk.BulkTopic, '_decode_one', lambda *args: alone.append(args) or one(*args))
+    bag = read_bag(recording.write(tmp_path / 'bag'))
+    assert len(bag.commands.torque) == 2000
+    assert not alone
+
+
 def test_garbled_messages_are_unusable_and_the_others_count(recording, tmp_path):
     whole = read_bag(recording.write(tmp_path / 'whole'))
     for topic in contract.BAG_TOPICS:

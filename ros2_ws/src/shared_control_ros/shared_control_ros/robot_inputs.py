@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 from rclpy.node import Node
+from shared_control.contract import ANSWER_DIGITS
 from shared_control.world import World
 from std_msgs.msg import Float64MultiArray
 
 from . import contract
 from .fast_loop import Polled
-from .wire import WireLayout, read_message
+from .torque_command import command_layout, label_of
+from .wire import read_message
 
 
 class TorqueInput(Polled):
@@ -18,26 +20,40 @@ class TorqueInput(Polled):
     def __init__(self, node: Node, dof: int):
         self._dof = dof
         super().__init__(node, contract.EFFORT_COMMANDS, raw=True)
-        self._layout = WireLayout(Float64MultiArray(data=[0.0] * dof), ('data',))
+        self._layout = command_layout(dof)
 
-    def read(self, data: bytes) -> np.ndarray | None:
-        """Torques of a serialized command, (n,), N m; None when it is unusable."""
-        fits = self._layout.fits(data)
+    def read(self, data: bytes, stamp_ns: int | None = None) -> np.ndarray | None:
+        """Torques of a serialized command, (n,), N m.
+
+        Returns: None when it is unusable, or when it answers joint states of another stamp than ``stamp_ns``. One that
+            does not say what it answers will do for any.
+        """
         try:
-            if fits:
-                torque = self._layout.views(data)[0]
-            else:
-                message = read_message(data, Float64MultiArray)
-                torque = np.array(message.data)
+            torque, label = self._parts(data)
         except ValueError as error:
             self._refuse(str(error))
             return None
-        if torque.shape == (self._dof,) and math.isfinite(torque.sum()):
-            if not fits:
-                self._layout.learn(message, data)
-            return torque
-        self._refuse(f'expected {self._dof} finite torques, got {torque[:10].tolist()}')
-        return None
+        if not (torque.shape == (self._dof,) and math.isfinite(torque.sum())):
+            self._refuse(f'expected {self._dof} finite torques, got {torque[:10].tolist()}')
+            return None
+        says_stamp = len(label) == ANSWER_DIGITS and label.isdigit()
+        return None if stamp_ns is not None and says_stamp and label != label_of(stamp_ns) else torque
+
+    def _parts(self, data: bytes) -> tuple[np.ndarray, bytes]:
+        """The torques, whatever they are, and what the dimension is called.
+
+        Raises:
+            ValueError: it is no Float64MultiArray.
+        """
+        if self._layout.fits(data):
+            return self._layout.views(data)[0], data[self._layout.text]
+        message = read_message(data, Float64MultiArray)
+        dimensions = message.layout.dim
+        label = dimensions[0].label.encode() if dimensions else b''
+        if len(label) == ANSWER_DIGITS:
+            dimensions[0].label = label_of(0).decode()  # as the layout has it
+            self._layout.learn(message, data)
+        return np.array(message.data), label
 
     def _refuse(self, fault: str) -> None:
         self._node.get_logger().error(

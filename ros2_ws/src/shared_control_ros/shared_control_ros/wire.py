@@ -24,9 +24,10 @@ class WireLayout:
     Args:
         message: one that is as all are, but for its stamp and for the values in its arrays.
         arrays: the names of its ``float64[]`` fields.
+        text: a piece of text in it that changes, too, but not in length.
     """
 
-    def __init__(self, message: Any, arrays: Sequence[str]):
+    def __init__(self, message: Any, arrays: Sequence[str], text: bytes = b''):
         self._names = arrays
         self._blank = self._blanked(message)
         marked = copy.deepcopy(message)
@@ -41,6 +42,10 @@ class WireLayout:
             mask[start:start + 8 * count] = bytes(8 * count)
         if hasattr(message, 'header'):
             mask[STAMP_BYTES] = bytes(STAMP_BYTES.stop - STAMP_BYTES.start)
+        start = data.index(text)
+        self.text = slice(start, start + len(text))
+        """Where the text lies in a message that fits."""
+        mask[self.text] = bytes(len(text))
         # A single integer: bytes are masked and compared within a microsecond.
         self._mask = _integer(mask)
         self._fixed = _integer(data) & self._mask

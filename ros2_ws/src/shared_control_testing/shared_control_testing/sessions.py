@@ -10,7 +10,7 @@ import numpy as np
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
-from shared_control.contract import Topic
+from shared_control.contract import ANSWER_DIGITS, Topic
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import panda
 
@@ -53,10 +53,12 @@ def joint_state(ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> A
                    effort=effort)
 
 
-def command(torque: np.ndarray) -> Any:
-    """Torques."""
+def command(ns: int, torque: np.ndarray) -> Any:
+    """Torques that answer the joint states of a stamp."""
+    dimension = message('std_msgs/msg/MultiArrayDimension', label=str(ns).zfill(ANSWER_DIGITS), size=len(torque),
+                        stride=len(torque))
     return message('std_msgs/msg/Float64MultiArray', data=torque,
-                   layout=message('std_msgs/msg/MultiArrayLayout', dim=[], data_offset=0))
+                   layout=message('std_msgs/msg/MultiArrayLayout', dim=[dimension], data_offset=0))
 
 
 def ball(ns: int, x: float) -> Any:
@@ -167,7 +169,7 @@ def record(lessons: list[Lesson], start_ns: int = START_NS, delay_ms: int = 2) -
             velocity = np.full(panda().dof, 0.0 if own_tick == 0 else 0.01)
             recording.add(contract.JOINT_STATES, at + 10, joint_state(at, panda().home, velocity, effort))
             effort = np.full(panda().dof, 7.0) + tick * 1e-6
-            recording.add(contract.EFFORT_COMMANDS, at + 500_000, command(effort))
+            recording.add(contract.EFFORT_COMMANDS, at + 500_000, command(at, effort))
             before, used = used, (min(max(agent + human, -20.0), 20.0), human, agent)
             if used != before or tick % 10 == 0:
                 for topic, moment in zip(APPLIED, used, strict=True):

@@ -11,7 +11,6 @@ import time
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from rclpy.node import Node
-from rclpy.serialization import serialize_message
 from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.control.moments import sum_moments
 from shared_control.control.sharing import PERSONS_WEIGHT, WAYS, Sharing
@@ -27,9 +26,8 @@ from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
 from shared_control_ros.task_parameter import declare_task
+from shared_control_ros.torque_command import TorqueBytes
 from shared_control_ros.watchdog import Watchdog
-from shared_control_ros.wire import WireLayout
-from std_msgs.msg import Float64MultiArray
 
 from .applied_moments import AppliedMoments
 from .joint_states import JointStateReader
@@ -92,9 +90,7 @@ class TorqueCtrlNode:
         self._awaited = [source for name, source in sources.items() if name in wait_for]
         self._policy_period_ns = round(POLICY_PERIOD * 1e9)
 
-        command = Float64MultiArray(data=[0.0] * robot.dof)
-        self._command = bytearray(serialize_message(command))
-        self._torque, = WireLayout(command, ('data',)).views(self._command)
+        self._command = TorqueBytes(robot.dof)
         self._command_publisher = node.create_publisher(
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
         self._applied = AppliedMoments(node, task.axes, robot.base_frame)
@@ -107,7 +103,6 @@ class TorqueCtrlNode:
         self._watchdog = Watchdog()
         self._background = Background(node)
         self._answered_ns = 0
-        self._repetitions = 0
         self._ticks = 0
 
     def run(self, stop: Stop) -> None:
@@ -132,11 +127,6 @@ class TorqueCtrlNode:
         self._background.poll()
         self._safety.hear()
 
-    def _is_leftover(self, stamp_ns: int) -> bool:
-        """Whether this tick was answered and is only its first repetition (architecture.md, "The tick")."""
-        self._repetitions = self._repetitions + 1 if stamp_ns == self._answered_ns else 0
-        return self._repetitions == 1
-
     def _hear(self, message: bytes, stop: Stop) -> None:
         try:
             state = self._reader.read(message)
@@ -147,7 +137,7 @@ class TorqueCtrlNode:
         now_ns = stamp_of(message)
         if not self._safety.enabled:
             self._stand_by(now_ns, *state)
-        if self._safety.enabled and not self._is_leftover(now_ns):
+        if self._safety.enabled:
             self._answer(now_ns, *state, stop)
 
     def _answer(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray, stop: Stop) -> None:
@@ -160,8 +150,8 @@ class TorqueCtrlNode:
         human, agent = self._human.moment(now_ns), self._agent.moment(now_ns)
         agent, human = self._sharing.parts(agent, human)
         applied = sum_moments(agent, human, self._moment_limit)
-        self._torque[:] = self._controller.torque(q, qd, effort, applied)
-        self._command_publisher.publish(bytes(self._command))
+        self._command.torque[:] = self._controller.torque(q, qd, effort, applied)
+        self._command_publisher.publish(self._command.answer(now_ns))
         self._answered_ns = now_ns
         self._diagnostics.tick()
         self._applied.publish(now_ns, applied, human, agent, self._ticks % TICKS_PER_POLL == 0)
@@ -169,10 +159,10 @@ class TorqueCtrlNode:
     def _stand_by(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> None:
         """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""
         self._safety.see(q)
-        if self._safety.stopping_ticks and not self._is_leftover(now_ns):
-            self._safety.stopping_ticks -= 1
-            self._torque[:] = self._controller.damping_torque(q, qd, effort)
-            self._command_publisher.publish(bytes(self._command))
+        if self._safety.stopping_ticks:
+            self._safety.stopping_ticks -= now_ns != self._answered_ns  # a repeated tick is none
+            self._command.torque[:] = self._controller.damping_torque(q, qd, effort)
+            self._command_publisher.publish(self._command.answer(now_ns))
             self._answered_ns = now_ns
 
     def _wait_for_sources(self, now_ns: int, stop: Stop) -> None:

@@ -9,6 +9,7 @@ ordinary way and found to agree; the others are decoded one by one.
 from collections.abc import Callable
 
 import numpy as np
+from shared_control.contract import ANSWER_DIGITS
 
 Row = tuple[np.ndarray, ...]
 Decode = Callable[[bytes], Row | None]
@@ -16,6 +17,8 @@ Decode = Callable[[bytes], Row | None]
 Layout = Callable[[int], np.dtype]
 """Where the numbers stand in a message of a given length, bytes."""
 
+_FIRST_LABEL = 12
+"""Where the label of an array's first dimension begins, after encapsulation, number of dimensions and length, bytes."""
 BLOCK = 20_000
 """Messages that are decoded together; bounds the memory for undecoded ones."""
 
@@ -35,8 +38,11 @@ def wrench_layout(size: int) -> np.dtype:
 
 
 def command_layout(dof: int) -> Layout:
-    """``dof`` doubles at the end."""
-    return lambda size: _layout(size, {'torque': (size - 8 * dof, '<f8', dof)})
+    """``dof`` doubles at the end; before them, if the command says it, the stamp that it answers as text."""
+    answering = _FIRST_LABEL + ANSWER_DIGITS + 21 + 8 * dof  # end of text, size, stride, offset, length, padding
+    return lambda size: _layout(size, {
+        'torque': (size - 8 * dof, '<f8', dof),
+        **({'answers': (_FIRST_LABEL, 'u1', ANSWER_DIGITS)} if size == answering else {})})
 
 
 def _layout(size: int, fields: dict[str, tuple[int, str, int]]) -> np.dtype:

@@ -238,7 +238,10 @@ class _Collector:
 
     def _command(self, raw: bytes) -> Row | None:
         message = self._message(raw, contract.EFFORT_COMMANDS.type)
-        return None if message is None or len(message.data) != self._robot.dof else (message.data,)
+        if message is None or len(message.data) != self._robot.dof:
+            return None
+        label = message.layout.dim[0].label.encode() if message.layout.dim else b''
+        return (message.data, np.frombuffer(label, np.uint8)) if label else (message.data,)
 
     def _add_ball(self, received_ns: int, message: Any) -> None:
         position, velocity = message.pose.pose.position, message.twist.twist.linear

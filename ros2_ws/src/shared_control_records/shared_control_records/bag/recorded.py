@@ -43,7 +43,7 @@ class JointStates:
 
 @dataclass(frozen=True, eq=False)
 class Commands:
-    """/effort_controller/commands, which carry no stamp."""
+    """/effort_controller/commands."""
 
     received_ns: np.ndarray
     """(n,)"""

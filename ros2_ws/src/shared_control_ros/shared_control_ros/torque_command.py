@@ -1,0 +1,44 @@
+"""Joint torques as they travel: Float64MultiArray with the tick that they answer.
+
+The label of the array's dimension is the stamp of the joint states that were answered, ns, in digits. A simulator in
+lockstep needs it: after a stall an answer may come twice, and one taken for that of the next tick would leave every
+torque from then on a tick late. Effort controllers of robots look at the data alone.
+"""
+
+from rclpy.serialization import serialize_message
+from shared_control.contract import ANSWER_DIGITS
+from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
+
+from .wire import WireLayout
+
+
+def label_of(stamp_ns: int) -> bytes:
+    """What the dimension is called in the answer to joint states of this stamp."""
+    return str(stamp_ns).zfill(ANSWER_DIGITS).encode()
+
+
+def torque_command(torque: list[float], stamp_ns: int) -> Float64MultiArray:
+    """The answer to joint states of a stamp: torques, (n,), N m."""
+    dimension = MultiArrayDimension(label=label_of(stamp_ns).decode(), size=len(torque), stride=len(torque))
+    return Float64MultiArray(layout=MultiArrayLayout(dim=[dimension]), data=torque)
+
+
+def command_layout(dof: int) -> WireLayout:
+    """Where torques and label lie in an answer with ``dof`` torques."""
+    return WireLayout(torque_command([0.0] * dof, 0), ('data',), text=label_of(0))
+
+
+class TorqueBytes:
+    """An answer laid out once, of which torques and label are filled in."""
+
+    def __init__(self, dof: int):
+        layout = command_layout(dof)
+        self._bytes = bytearray(serialize_message(torque_command([0.0] * dof, 0)))
+        self._label = layout.text
+        self.torque, = layout.views(self._bytes)
+        """(n,), N m; write the torques here."""
+
+    def answer(self, stamp_ns: int) -> bytes:
+        """The message that answers joint states of this stamp."""
+        self._bytes[self._label] = label_of(stamp_ns)
+        return bytes(self._bytes)
