@@ -1,8 +1,8 @@
 """Simulator of a Panda with a tray and a ball: a robot on topics.
 
 Publishes /joint_states (1 kHz), /ball and /clock (100 Hz), takes joint torques on /effort_controller/commands and
-pushes at the tray on /disturbance. Services: simulator/reset (Trigger), simulator/pause (SetBool),
-simulator/set_parameters (SetParameters: seed).
+pushes at the tray on /disturbance. Services: simulator/reset (Trigger), simulator/pause and
+simulator/rest (SetBool), simulator/set_parameters (SetParameters: seed).
 """
 
 import gc
@@ -76,6 +76,7 @@ class PandaSimNode:
         self._pushes = PushInput(node, self._world, self._timeout_ticks)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
+        node.create_service(SetBool, contract.REST_SERVICE, self._on_rest)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
         self._watchdog = Watchdog()
@@ -84,7 +85,8 @@ class PandaSimNode:
         # Simulation time starts at the time of the day, at a multiple of the policy period.
         policy_period_ns = TICKS_PER_ACTION * PERIOD_NS
         self._start_ns = time.time_ns() // policy_period_ns * policy_period_ns
-        self._paused = False
+        self._paused = False  # by a person
+        self._rests = False  # for the learner
         self._times = TickTimes()
         self._running_seconds = 0.0
         self._missed = 0
@@ -100,7 +102,7 @@ class PandaSimNode:
         while not stop.requested:
             if self._tick % TICKS_PER_ACTION == 0:
                 self._between_actions()
-            if self._paused:
+            if self._stands_still:
                 self._background.spin_once(0.02)
                 self._diagnostics.skip()
                 began = self._deadline = time.monotonic()
@@ -112,6 +114,10 @@ class PandaSimNode:
                 began = now
             if self._diagnostics.due():
                 self._report()
+
+    @property
+    def _stands_still(self) -> bool:
+        return self._paused or self._rests
 
     def _between_actions(self) -> None:
         """Requests and disturbances are looked at only here, so that episodes start at policy ticks."""
@@ -143,7 +149,7 @@ class PandaSimNode:
     def _await_torque(self, stop: Stop) -> np.ndarray | None:
         """The torque for this tick; None when the node is to stop or was paused meanwhile."""
         began = time.monotonic()
-        while not (stop.requested or self._paused):
+        while not (stop.requested or self._stands_still):
             message = self._commands.wait(REPEAT_AFTER)
             torque = None if message is None else self._commands.read(message, self._stamp_ns)
             if torque is not None:
@@ -208,6 +214,12 @@ class PandaSimNode:
         self._paused = request.data
         response.success = True
         response.message = 'paused' if self._paused else 'running'
+        return response
+
+    def _on_rest(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._rests = request.data
+        response.success = True
+        response.message = 'at rest' if self._rests else 'paused' if self._paused else 'running'
         return response
 
     # -- output ----------------------------------------------------------------------------------------------------

@@ -20,8 +20,8 @@ def stamps_ms(messages):
     return np.array([to_ns(m.header.stamp) for m in messages]) // 1_000_000
 
 
-def pause(observer, paused):
-    assert observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=paused)).success
+def pause(observer, paused, service=contract.PAUSE_SERVICE):
+    assert observer.call(SetBool, service, SetBool.Request(data=paused)).success
 
 
 def set_parameters(observer, *parameters):
@@ -50,6 +50,21 @@ class TestLockstepWithController:
         assert set(steps) <= {0, 1} and (steps[100:] == 1).all()
         assert set(np.diff(stamps_ms(balls))) == {10}
         assert balls[0].header.frame_id == contract.BASE_FRAME
+
+    def test_a_pause_that_a_person_asks_for_while_the_learner_rests_stays(self, observer, states):
+        pause(observer, True, contract.REST_SERVICE)
+        pause(observer, True)
+        pause(observer, False, contract.REST_SERVICE)
+        observer.spin_for(0.3)
+        count = len(states)
+        observer.spin_for(0.3)
+        assert len(states) == count
+        pause(observer, True, contract.REST_SERVICE)
+        pause(observer, False)
+        observer.spin_for(0.3)
+        assert len(states) == count
+        pause(observer, False, contract.REST_SERVICE)
+        observer.spin(lambda: len(states) > count)
 
     def test_pause_stops_time_at_a_policy_tick_and_reset_starts_there(self, observer, states):
         balls = observer.listen(contract.BALL)

@@ -84,7 +84,7 @@ class GraphPlant:
         for moment in self._moments:
             moment.clear()
         self._last_number = 0
-        self._simulator.pause(False, self._attend)
+        self._simulator.rest(False, self._attend)
         ball = self._next_ball()
         return self._read(ball)
 
@@ -101,10 +101,10 @@ class GraphPlant:
     def rest(self) -> None:
         """Ask for nothing, and stop time."""
         self._answer_with_zero()
-        self._simulator.pause(True, self._answer_with_zero)
+        self._simulator.rest(True, self._answer_with_zero)
 
     def _answer_with_zero(self) -> None:
-        """Time goes on until the pause begins, and a controller that waits for an answer must have one."""
+        """Time goes on until the rest begins, and a controller that waits for an answer must have one."""
         while (ball := self._balls.take()) is not None:
             self._stamp_ns = to_ns(ball.header.stamp)
         if self._stamp_ns:

@@ -1,7 +1,7 @@
 """PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
 
 Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench and /target_wrench, publishes
-/agent/target_wrench and /training/*, pauses and resets the simulator between episodes. Services (Trigger):
+/agent/target_wrench and /training/*, rests and resets the simulator between episodes. Services (Trigger):
 learner/start: end the practice; learner/repeat: start the episode over; learner/finish: end the teaching after this
 episode.
 """

@@ -17,7 +17,7 @@ ANSWER_SECONDS = 3.0
 
 
 class Simulator:
-    """Pauses, resets and seeds the simulator; each call waits until that is done, however long it takes.
+    """Rests, resets and seeds the simulator; each call waits until that is done, however long it takes.
 
     ``attend`` is called again and again meanwhile; it may raise to give up.
 
@@ -29,16 +29,16 @@ class Simulator:
     def __init__(self, node: Node, background: Background):
         self._node = node
         self._background = background
-        self._pause = node.create_client(SetBool, contract.PAUSE_SERVICE)
+        self._rest = node.create_client(SetBool, contract.REST_SERVICE)
         self._reset = node.create_client(Trigger, contract.RESET_SERVICE)
         self._seed = node.create_client(SetParameters, contract.SEED_SERVICE)
 
-    def pause(self, paused: bool, attend: Callable[[], None]) -> None:
-        """Stop time, or let it go on. A robot refuses that: its time goes on all the same."""
-        answer = self._call(self._pause, SetBool.Request(data=paused), attend)
+    def rest(self, rests: bool, attend: Callable[[], None]) -> None:
+        """Stop time, or let it go on, unless a person has paused it. A robot refuses: its time goes on all the same."""
+        answer = self._call(self._rest, SetBool.Request(data=rests), attend)
         if not answer.success:
             self._node.get_logger().info(
-                f'{self._pause.service_name}: {answer.message or "refused"}', throttle_duration_sec=60.0)
+                f'{self._rest.service_name}: {answer.message or "refused"}', throttle_duration_sec=60.0)
 
     def reset(self, seed: int | None, attend: Callable[[], None]) -> None:
         """Drop the ball anew; a ``seed`` begins the sequence of ball starts anew.
@@ -61,7 +61,7 @@ class Simulator:
 
     def is_there(self) -> bool:
         """Whether its services are up."""
-        return all(client.service_is_ready() for client in (self._pause, self._reset, self._seed))
+        return all(client.service_is_ready() for client in (self._rest, self._reset, self._seed))
 
     def _call(self, client: Any, request: Any, attend: Callable[[], None]) -> Any:
         """The answer; asked for again when it does not come."""

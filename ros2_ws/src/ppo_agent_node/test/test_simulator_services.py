@@ -20,10 +20,10 @@ class Services:
 
     def __init__(self, context):
         self.node = Node('panda_sim_node', context=context)
-        self.reset_succeeds = self.seed_succeeds = self.pause_succeeds = True
+        self.reset_succeeds = self.seed_succeeds = self.rest_succeeds = True
         self.asked = []
         self.node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
-        self.node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
+        self.node.create_service(SetBool, contract.REST_SERVICE, self._on_rest)
         self.node.create_service(SetParameters, contract.SEED_SERVICE, self._on_seed)
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
@@ -35,8 +35,8 @@ class Services:
         response.success, response.message = self.reset_succeeds, 'the world is broken'
         return response
 
-    def _on_pause(self, _, response):
-        response.success = self.pause_succeeds
+    def _on_rest(self, _, response):
+        response.success = self.rest_succeeds
         return response
 
     def _on_seed(self, request, response):
@@ -70,7 +70,7 @@ class TestAnswers:
 
     def test_what_is_done_is_done(self, simulator, services):
         simulator.reset(5, lambda: None)
-        simulator.pause(False, lambda: None)
+        simulator.rest(False, lambda: None)
         assert services.asked == ['reset']
 
     def test_a_refused_reset_makes_the_episode_void(self, simulator, services):
@@ -85,8 +85,8 @@ class TestAnswers:
         assert services.asked == []
 
     def test_a_robot_need_not_stand_still(self, simulator, services):
-        services.pause_succeeds = False
-        simulator.pause(True, lambda: None)
+        services.rest_succeeds = False
+        simulator.rest(True, lambda: None)
 
 
 def test_time_is_counted_not_rounds(monkeypatch, observer):

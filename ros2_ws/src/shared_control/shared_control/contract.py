@@ -120,7 +120,11 @@ BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
 """What a recorder records."""
 
 RESET = Service('simulator/reset', _TRIGGER, 'simulator, mock', 'arm to the reference, ball dropped anew')
-PAUSE = Service('simulator/pause', _SET_BOOL, 'simulator, mock', 'time stands still, or goes on; refused by a robot')
+PAUSE = Service(
+    'simulator/pause', _SET_BOOL, 'simulator, mock', 'for people: time stands still, or goes on; refused by a robot')
+REST = Service(
+    'simulator/rest', _SET_BOOL, 'simulator, mock',
+    'for the learner: the same, and a pause that a person asks for meanwhile stays')
 SEED = Service(
     'simulator/set_parameters', 'rcl_interfaces/srv/SetParameters', 'simulator, mock',
     '`seed` alone: begins the sequence of ball starts anew')
@@ -137,5 +141,5 @@ ROBOT_ENABLE = Service('robot/enable', _SET_BOOL, 'bridge, mock', 'move the arm,
 ROBOT_RECOVERY = Service('robot/error_recovery', _TRIGGER, 'bridge, mock', 'leave a reflex stop')
 
 SERVICES = (
-    RESET, PAUSE, SEED, LEARNER_START, LEARNER_REPEAT, LEARNER_FINISH, CONTROLLER_ENABLE, CONTROLLER_STOP,
+    RESET, PAUSE, REST, SEED, LEARNER_START, LEARNER_REPEAT, LEARNER_FINISH, CONTROLLER_ENABLE, CONTROLLER_STOP,
     CONTROLLER_RESET, ROBOT_ENABLE, ROBOT_RECOVERY)

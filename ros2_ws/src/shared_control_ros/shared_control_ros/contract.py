@@ -78,6 +78,7 @@ BAG_TOPICS = tuple(map(ros_topic, table.BAG_TOPICS))
 
 RESET_SERVICE = table.RESET.name
 PAUSE_SERVICE = table.PAUSE.name
+REST_SERVICE = table.REST.name
 SEED_SERVICE = table.SEED.name
 START_SERVICE = table.LEARNER_START.name
 REPEAT_SERVICE = table.LEARNER_REPEAT.name

@@ -8,7 +8,7 @@ from .contract import Topic
 DISPLAYED = (
     contract.JOINT_STATES_THROTTLE, contract.BALL, contract.HUMAN_WRENCH, contract.AGENT_WRENCH,
     contract.APPLIED_WRENCH)
-SIMULATOR = (contract.RESET_SERVICE, contract.PAUSE_SERVICE, contract.SEED_SERVICE)
+SIMULATOR = (contract.RESET_SERVICE, contract.PAUSE_SERVICE, contract.REST_SERVICE, contract.SEED_SERVICE)
 CONTROLLER = (
     contract.ENABLE_SERVICE, contract.EMERGENCY_STOP_SERVICE, contract.RESET_EMERGENCY_STOP_SERVICE)
 ROBOT = (contract.JOINT_STATES, contract.JOINT_STATES_THROTTLE, contract.DIAGNOSTICS)
@@ -53,7 +53,7 @@ INTERFACES = {
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
                     contract.APPLIED_WRENCH),
         serves=(contract.START_SERVICE, contract.REPEAT_SERVICE, contract.FINISH_SERVICE),
-        calls=SIMULATOR),
+        calls=(contract.RESET_SERVICE, contract.REST_SERVICE, contract.SEED_SERVICE)),
     'sim_tutor_node': Interface(
         publishes=(contract.KEYS, contract.DIAGNOSTICS),
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.EPISODE,

@@ -3,7 +3,7 @@
 Its clock runs freely (wall time, no /clock), its ticks jitter, it loses commands, carries its own weight, stops by
 itself when a limit is violated, and recovers when asked to. Services: robot/enable (SetBool; it begins enabled),
 robot/error_recovery (Trigger), simulator/reset (Trigger), simulator/set_parameters (SetParameters: seed),
-simulator/pause (SetBool, refused: a robot's time does not stand still).
+simulator/pause and simulator/rest (SetBool, refused: a robot's time does not stand still).
 """
 
 import gc
@@ -78,6 +78,7 @@ class MockPandaNode:
         node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
+        node.create_service(SetBool, contract.REST_SERVICE, self._on_pause)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, self._period)
         self._watchdog = Watchdog()
