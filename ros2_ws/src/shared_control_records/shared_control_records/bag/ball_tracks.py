@@ -5,10 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from shared_control import contract
 from shared_control.plant import PlantState
+from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import RobotModel
 
 from .reader import Bag
 
+_PERIOD_NS = round(POLICY_PERIOD * 1e9)
 _JUMP = 0.03
 """m between two samples: the ball was dropped anew; a rolling ball makes a tenth of that."""
 
@@ -52,15 +54,22 @@ def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
         first = _after_drop(bag.ball.position[first:last]) + first
         if last - first < 2:
             continue
-        stamps = bag.ball.stamp_ns[first:last]
+        samples = _thinned(bag.ball.stamp_ns[first:last]) + first
+        stamps = bag.ball.stamp_ns[samples]
         tracks.append(EpisodeTrack(
             int(number), _phase(bag, (int(start_ns) + int(ended[0])) // 2), int(stamps[0]),
             (int(bag.ball.received_ns[first]), int(bag.ball.received_ns[last - 1])),
-            (stamps - stamps[0]) * 1e-9, *_seen(bag, slice(first, last), model)))
+            (stamps - stamps[0]) * 1e-9, *_seen(bag, samples, model)))
     return tracks
 
 
-def _seen(bag: Bag, samples: slice, model: RobotModel) -> tuple[np.ndarray, np.ndarray, bool]:
+def _thinned(stamps_ns: np.ndarray) -> np.ndarray:
+    """Indices of the samples that a learner may have seen: the first of each period of the policy, and the last."""
+    return np.unique(np.append(
+        np.flatnonzero(np.diff((stamps_ns - stamps_ns[0]) // _PERIOD_NS, prepend=-1)), len(stamps_ns) - 1))
+
+
+def _seen(bag: Bag, samples: np.ndarray, model: RobotModel) -> tuple[np.ndarray, np.ndarray, bool]:
     """At some samples of /ball: position errors, (n,), m; the ball on the tray, (n, 2), m; whether the task failed."""
     joints, ball, task = bag.joint_states, bag.ball, bag.task
     index = (np.searchsorted(joints.received_ns, ball.received_ns[samples], 'right') - 1).clip(min=0)

@@ -11,6 +11,8 @@ from collections.abc import Callable
 import numpy as np
 from shared_control.contract import ANSWER_DIGITS
 
+from .chunks import windows
+
 Row = tuple[np.ndarray, ...]
 Decode = Callable[[bytes], Row | None]
 """Decodes one message in the ordinary way; None when it is unusable."""
@@ -19,7 +21,7 @@ Layout = Callable[[int], np.dtype]
 
 _FIRST_LABEL = 12
 """Where the label of an array's first dimension begins, after encapsulation, number of dimensions and length, bytes."""
-BLOCK = 20_000
+BLOCK = 4_000
 """Messages that are decoded together; bounds the memory for undecoded ones."""
 
 
@@ -30,6 +32,13 @@ def joint_state_layout(dof: int) -> Layout:
     return lambda size: _layout(size, {
         'stamp': (4, '<i4', 2), 'q': (size - numbers - 2 * step, '<f8', dof),
         'qd': (size - numbers - step, '<f8', dof), 'effort': (size - numbers, '<f8', dof)})
+
+
+def odometry_layout(size: int) -> np.dtype:
+    """Stamp at the start; at the end pose and twist, each with 36 covariances behind it."""
+    twist = size - 8 * (36 + 6)
+    return _layout(size, {'stamp': (4, '<i4', 2), 'position': (twist - 8 * (36 + 7), '<f8', 3),
+                          'velocity': (twist, '<f8', 3)})
 
 
 def wrench_layout(size: int) -> np.dtype:
@@ -52,29 +61,31 @@ def _layout(size: int, fields: dict[str, tuple[int, str, int]]) -> np.dtype:
 
 
 class Columns:
-    """Rows of arrays as they come, a block at a time."""
+    """Rows of arrays as they come, a block at a time, in arrays that grow in place."""
 
     def __init__(self) -> None:
-        self._times: list[np.ndarray] = []
-        self._blocks: list[Row] = []
+        self._arrays: list[np.ndarray] = []
+        self._rows = 0
 
     def add(self, times: np.ndarray, columns: Row) -> None:
         """When the messages of a block were received, ns, and an array a field."""
-        self._times.append(times)
-        self._blocks.append(columns)
+        block = (times, *columns)
+        if not self._arrays:
+            self._arrays = [np.empty((0, *column.shape[1:]), column.dtype) for column in block]
+        end = self._rows + len(times)
+        for own, new in zip(self._arrays, block, strict=True):
+            if len(own) < end:
+                # The system moves large arrays by their pages, without copying, so that little room ahead will do.
+                own.resize((max(end, len(own) * 9 // 8), *own.shape[1:]), refcheck=False)
+            own[self._rows:end] = new
+        self._rows = end
 
-    def finish(self) -> tuple[np.ndarray, list[np.ndarray]]:
-        """All times, and one array a field; none without rows. The blocks are given up, so that no two copies stay."""
-        if not self._times:
-            return np.empty(0, np.int64), []
-        columns = [list(parts) for parts in zip(*self._blocks, strict=True)]
-        self._blocks.clear()
-        joined = []
-        while columns:
-            joined.append(np.concatenate(columns.pop(0)))
-        times = np.concatenate(self._times)
-        self._times.clear()
-        return times, joined
+    def finish(self) -> list[np.ndarray]:
+        """All times, and one array a field; nothing without rows. They are given up here."""
+        arrays, self._arrays = self._arrays, []
+        for array in arrays:
+            array.resize((self._rows, *array.shape[1:]), refcheck=False)
+        return arrays
 
 
 class BulkTopic:
@@ -84,7 +95,7 @@ class BulkTopic:
         decode: gives the fields of one message, in the order of the layout.
         layout: where they stand.
         smallest: bytes below which a message cannot have that layout.
-        add: takes each block: when its messages were received, ns, and an array a field.
+        add: takes each block: when its messages were received, ns, and an array a field; it copies what it keeps.
     """
 
     def __init__(self, decode: Decode, layout: Layout, smallest: int, add: Callable[[np.ndarray, Row], None]):
@@ -97,6 +108,8 @@ class BulkTopic:
         self._constant = np.empty(0, bool)
         self._waiting: list[bytes] = []
         self._waiting_times: list[int] = []
+        self._alike: list[tuple[np.ndarray, np.ndarray]] = []
+        self._count_alike = 0
         self.unusable = 0
         """Messages that could not be decoded."""
 
@@ -105,27 +118,41 @@ class BulkTopic:
         self._waiting.append(raw)
         self._waiting_times.append(received_ns)
         if len(self._waiting) == BLOCK:
-            self._decode_waiting()
+            self._add_waiting()
+
+    def add_all(self, times: np.ndarray, content: bytes, starts: np.ndarray, sizes: np.ndarray) -> None:
+        """More messages: when they were received, ns, where in ``content`` they begin, and how long they are."""
+        start = 0
+        while self._dtype is None and start < len(times):
+            self._learn(content[starts[start]:starts[start] + sizes[start]])
+            if self._dtype is None:
+                self._decode_one(times[start], content[starts[start]:starts[start] + sizes[start]])
+                start += 1
+        if self._dtype is None:
+            return
+        # Of bytes alone: numpy does not copy what lies between the fields of a structure.
+        of_that_size = windows(content, np.dtype((np.void, self._dtype.itemsize)))
+        for odd in (*np.flatnonzero(sizes[start:] != self._dtype.itemsize) + start, len(times)):
+            if odd > start:
+                self._alike.append((times[start:odd], of_that_size[starts[start:odd]]))
+                self._count_alike += odd - start
+            if odd < len(times):
+                self._decode_alike()
+                self._decode_one(times[odd], content[starts[odd]:starts[odd] + sizes[odd]])
+            start = odd + 1
+        if self._count_alike >= BLOCK:
+            self._decode_alike()
 
     def finish(self) -> None:
         """Decode what waits."""
-        self._decode_waiting()
+        self._add_waiting()
+        self._decode_alike()
 
-    def _decode_waiting(self) -> None:
+    def _add_waiting(self) -> None:
         messages, self._waiting = self._waiting, []
         times, self._waiting_times = np.array(self._waiting_times, np.int64), []
-        start = 0
-        while start < len(messages):
-            end = start + 1
-            if self._dtype is None:
-                self._learn(messages[start])
-            if self._dtype is not None and len(messages[start]) == self._dtype.itemsize:
-                while end < len(messages) and len(messages[end]) == self._dtype.itemsize:
-                    end += 1
-                self._decode_alike(times[start:end], messages[start:end], self._dtype)
-            else:
-                self._decode_one(times[start], messages[start])
-            start = end
+        sizes = np.array([len(message) for message in messages], np.int64)
+        self.add_all(times, b''.join(messages), np.cumsum(sizes) - sizes, sizes)
 
     def _learn(self, raw: bytes) -> None:
         """Take ``raw`` for the pattern of the topic, if the layout fits it."""
@@ -144,18 +171,22 @@ class BulkTopic:
             varying[name].view(np.uint8)[...] = 1
         self._constant = varying.view(np.uint8) == 0
 
-    def _decode_alike(self, times: np.ndarray, messages: list[bytes], dtype: np.dtype) -> None:
-        """Decode messages of the pattern's length."""
-        block = np.frombuffer(b''.join(messages), dtype)
-        content = block.view(np.uint8).reshape(len(block), dtype.itemsize)
+    def _decode_alike(self) -> None:
+        """Decode what has collected of messages of the pattern's length."""
+        if not self._alike or self._dtype is None:
+            return
+        times, messages = (np.concatenate(parts) for parts in zip(*self._alike, strict=True))
+        self._alike.clear()
+        self._count_alike = 0
+        block, content = messages.view(self._dtype), messages.view(np.uint8).reshape(len(messages), -1)
+        assert block.dtype.names is not None
         alike = (content[:, self._constant] == self._pattern[self._constant]).all(axis=1)
-        assert dtype.names is not None
         start = 0
         for odd in (*np.flatnonzero(~alike), len(block)):
             if odd > start:
-                self._add(times[start:odd], tuple(block[name][start:odd].copy() for name in dtype.names))
+                self._add(times[start:odd], tuple(block[name][start:odd] for name in block.dtype.names))
             if odd < len(block):
-                self._decode_one(times[odd], messages[odd])
+                self._decode_one(times[odd], messages[odd].tobytes())
             start = odd + 1
 
     def _decode_one(self, time: np.int64, raw: bytes) -> None:

@@ -19,7 +19,7 @@ def write_bag_report(bag: Path, output: Path) -> Path:
     folder.bag = bag.absolute()
     try:
         unpack(content, folder)
-        write_report(folder)
+        write_report(folder, bag=content)
     finally:
         folder.release()
     return folder.report

@@ -24,12 +24,13 @@ STYLE_SHEET = Path(__file__).with_name('page.css')
 _NOT_KNOWN = '–'
 
 
-def write_report(folder: SessionFolder, restarts: int | None = None) -> Summary:
+def write_report(folder: SessionFolder, restarts: int | None = None, bag: Bag | None = None) -> Summary:
     """Write picture, summary and report; what is missing in the folder is left out of them.
 
     Args:
         folder: of a session that has ended.
         restarts: how often a node was started again; when None, what an earlier report says.
+        bag: the folder's, when it was read already.
 
     Raises:
         ValueError: a file of the session is damaged; the message names it.
@@ -37,7 +38,7 @@ def write_report(folder: SessionFolder, restarts: int | None = None) -> Summary:
     """
     if restarts is None:
         restarts = (folder.read_json(folder.summary) or {}).get('restarts')
-    bag, bag_error = _read(folder)
+    bag, bag_error = (bag, None) if bag else _read(folder)
     rows, test = read_episodes(folder.episodes), load_test(folder.test)
     task = bag.task if bag else recorded_task(folder.bag)
     summary = summarize(folder, task, bag, bag_error, rows, test, restarts)
