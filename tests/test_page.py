@@ -1,5 +1,6 @@
 """The teaching page in a real browser, with a whole session on the live graph behind it, and with a recorded one."""
 
+import json
 import signal
 
 import pytest
@@ -55,6 +56,7 @@ class TestASessionOnThePage:
         browser.open(session[1])
         browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
         assert browser.text('role') == 'you teach'
+        assert 'stays' in browser.driver.find_element('css selector', '.help').text
         browser.wait(lambda: browser.script(TRIANGLES) > 5000, 'the meshes')
         assert browser.script(SMOOTHS) is False, 'this browser draws by software'
         assert not browser.part('focus').is_displayed()
@@ -69,6 +71,8 @@ class TestASessionOnThePage:
             assert 'down' in browser.driver.find_element('css selector', f'[data-key={name}]').get_attribute('class')
             browser.keys().key_up(key).perform()
             browser.wait(lambda m_y=m_y: browser.text('human-moment') == f'{m_y:+.1f}'.replace('-', '−'), 'the number')
+            lit = f'return document.querySelectorAll("[data-key={name}] .on").length'
+            browser.wait(lambda lit=lit: browser.script(lit) == 1, 'a notch')
             browser.wait(lambda m_y=m_y: any(m_y == point[1] for point in browser.chart('moments')[0]), 'the chart')
             browser.wait(lambda scene=scene, sign=sign: sign * (browser.ball_on_screen() - scene) > ROLLED, 'the scene')
             browser.wait(lambda close=close, sign=sign: sign * (self.ball_in_close_view(browser) - close) > ROLLED,
@@ -108,6 +112,7 @@ class TestASessionOnThePage:
         second = browser.open_tab(session[1])
         browser.wait(lambda: 'another page teaches' in browser.text('role'), 'its role')
         assert not browser.part('start').is_displayed()
+        browser.wait(lambda: browser.text('doing').startswith('You are watching'), 'that it only watches')
         browser.type(Keys.ARROW_LEFT)
         refused = browser.driver.execute_async_script("""
             const socket = new WebSocket(`ws://${location.host}/live`), done = arguments[0];
@@ -139,20 +144,40 @@ class TestASessionOnThePage:
 
     def test_teaching_starts_over_and_pauses(self, browser, observer):
         times = observer.listen(contract.TIME_LEFT)
+        start = browser.part('start').rect
         browser.part('start').click()
         browser.wait(lambda: browser.text('phase') == 'Teach · episode 1', 'teaching')
-        observer.spin(lambda: times and times[-1].data < 14.0)
+        assert not self.overlap(start, browser.part('finish').rect), 'a second click must not end the teaching'
+        observer.spin(lambda: times and 3.0 < times[-1].data < 14.0)
         browser.part('repeat').click()
         observer.spin(lambda: times[-1].data > 14.5, what='the episode to start over')
         browser.part('pause').click()
-        browser.wait(lambda: browser.text('doing') == 'Paused.', 'the pause')
+        browser.wait(lambda: browser.text('doing') == 'Paused: everything waits, and keys do not count.', 'the pause')
+        assert not browser.part('repeat').is_enabled()
         browser.part('pause').click()
-        browser.wait(lambda: browser.text('doing') != 'Paused.', 'going on')
+        browser.wait(lambda: 'Paus' not in browser.text('doing'), 'going on')
+
+    @staticmethod
+    def overlap(one, other):
+        return all(one[at] < other[at] + other[size] and other[at] < one[at] + one[size]
+                   for at, size in (('x', 'width'), ('y', 'height')))
+
+    def test_done_asks_and_can_be_taken_back(self, browser):
+        # Clicks of a script come at once: none of them answers the question, which must stand for a moment.
+        click = 'for (const name of ["finish", "yes"]) document.querySelector(`[data-part=${name}]`).click()'
+        browser.wait(lambda: browser.script(click) or browser.part('sure').is_displayed(), 'the question')
+        assert not browser.script('return teachPage.picture.ends_teaching')
+        browser.wait(lambda: browser.part('yes').click() or not browser.part('sure').is_displayed(), 'yes')
+        browser.wait(lambda: browser.part('ending').is_displayed(), 'the end to be announced')
+        browser.part('keep-teaching').click()
+        browser.wait(lambda: browser.part('finish').is_displayed(), 'the teaching to go on')
 
     def test_an_episode_ends_in_the_charts(self, browser):
         assert browser.chart('returns') == [[]]
         for _ in range(2):
             browser.type(Keys.ARROW_RIGHT)  # the ball falls, soon: nobody has to wait for 15 s
+        browser.wait(lambda: browser.text('card-outcome').startswith('The ball '), 'how it ended', timeout=60)
+        browser.wait(lambda: browser.text('card-next').startswith('Next in'), 'when the next begins')
         browser.wait(lambda: len(browser.chart('returns')[0]) == 1, 'the return', timeout=60)
         assert 0 <= browser.chart('shares')[0][0] <= 100
 
@@ -167,6 +192,94 @@ class TestASessionOnThePage:
         assert 'Stopped before the end' in said and 'Traceback' not in said
 
 
+SIZES = ((1920, 1080), (1366, 768), (844, 390), (683, 384), (390, 844))
+"""Two screens, a phone held sideways, 1366 x 768 at 200 %, a phone."""
+NEEDED = ('.phase', '[data-part=close-view]', '[data-key=left]', '[data-key=space]', '[data-key=right]',
+          '[data-part=start]', '[data-part=pause]', '[data-part=stop]')
+BOX = ('const b = document.querySelector("%s").getBoundingClientRect();'
+       'return {x: b.left, y: b.top, width: b.width, height: b.height}')
+
+
+class TestASessionByTheKeyboardAlone:
+    """In this order, from the practice to the end card and beyond."""
+
+    @pytest.fixture(scope='class')
+    def session(self, domain_id, tmp_path_factory):
+        folder = tmp_path_factory.mktemp('session') / 'session'
+        process, address = serve('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder))
+        yield process, address, folder
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+
+    @staticmethod
+    def tab_to(browser, name):
+        """Press Tab until the focus is on a button."""
+        for _ in range(30):
+            browser.type(Keys.TAB)
+            if browser.script('return document.activeElement.dataset.part') == name:
+                return
+        raise AssertionError(f'Tab does not reach {name}')
+
+    def test_every_size_shows_what_teaching_needs(self, browser, session):
+        browser.open(session[1])
+        browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
+        for width, height in SIZES:
+            browser.size(width, height)
+            boxes = [browser.script(BOX % selector) for selector in NEEDED]
+            for selector, box in zip(NEEDED, boxes, strict=True):
+                assert box['x'] >= 0 and box['y'] >= 0, (width, height, selector)
+                assert box['x'] + box['width'] <= width + 1 and box['y'] + box['height'] <= height + 1, (
+                    width, height, selector, box)
+                if selector.startswith(('[data-key', '[data-part=st', '[data-part=pa')):
+                    assert min(box['width'], box['height']) >= 44, (width, height, selector, box)
+            for i, one in enumerate(boxes):
+                for j, other in enumerate(boxes[:i]):
+                    overlap = TestASessionOnThePage.overlap(one, other)
+                    assert not overlap, (width, height, NEEDED[i], NEEDED[j])
+            assert browser.script('return document.documentElement.scrollWidth') <= width + 1, (width, height)
+
+    def test_it_is_taught_and_ended(self, browser):
+        browser.size(1000, 700)
+        browser.type(Keys.ENTER)
+        browser.wait(lambda: browser.text('card-next').startswith('Next in'), 'the countdown')
+        browser.wait(lambda: browser.text('phase') == 'Teach · episode 1', 'teaching')
+        browser.type('p')
+        browser.wait(lambda: browser.text('pause-text') == 'Go on', 'the pause')
+        browser.type('p')
+        browser.wait(lambda: browser.text('pause-text') == 'Pause', 'going on')
+        self.tab_to(browser, 'finish')
+        browser.wait(lambda: browser.type(Keys.ENTER) or browser.part('sure').is_displayed(), 'the question')
+        browser.wait(lambda: browser.script('return document.activeElement.dataset.part') == 'no', 'the focus')
+        browser.type(Keys.TAB)
+        browser.wait(lambda: browser.type(Keys.ENTER) or browser.part('ending').is_displayed(), 'the end is announced')
+        for key in (Keys.ARROW_RIGHT, 'd'):
+            browser.type(key)  # the ball falls, soon
+
+    def test_the_end_card_has_the_result_and_stays(self, browser, session):
+        browser.wait(lambda: browser.part('close').is_displayed(), 'the end', timeout=120)
+        tested = json.loads((session[2] / 'test.json').read_text())
+        said = f'Your robot alone kept the ball in the middle in {tested["successes"]} of 1 tests.'
+        assert browser.text('end-words') == said
+        browser.wait(lambda: browser.script(
+            'return document.querySelector("[data-part=end-picture]").naturalWidth') > 500, 'the picture')
+        status = browser.driver.execute_async_script(
+            'fetch(document.querySelector("[data-part=end-report]").href).then((r) => arguments[0](r.status))')
+        assert status == 200
+        browser.driver.refresh()
+        browser.wait(lambda: browser.part('close').is_displayed() and browser.text('end-words') == said, 'it again')
+        assert session[0].poll() is None
+
+    def test_closing_is_a_choice(self, browser, session):
+        self.tab_to(browser, 'close')
+        browser.type(Keys.ENTER)
+        session[0].communicate(timeout=60)
+        assert session[0].returncode == 0
+        assert browser.text('end-words') == 'You can close this window.'
+        assert not browser.script('const p = document.getElementById("popup"); return p && p.offsetParent')
+        assert not (session[2] / 'ending.json').exists()
+
+
 @pytest.fixture
 def replay(tmp_path):
     """The address of a replay of two episodes of 6 s."""
@@ -175,7 +288,7 @@ def replay(tmp_path):
     yield address
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=20)
-    assert process.returncode == 130
+    assert process.returncode == 0
 
 
 def test_a_recorded_session_plays_on_the_page(replay):

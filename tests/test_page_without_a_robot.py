@@ -40,7 +40,7 @@ class TestTheKeyboard:
 
     def test_without_webgl_it_says_so_and_goes_on(self, browser):
         assert 'cannot draw in 3D' in browser.text('scene')
-        assert browser.text('doing') == 'No robot is to be heard yet …'
+        assert browser.text('doing') == 'Waiting for the robot …'
 
     @pytest.mark.parametrize(('name', 'key'), [
         ('left', {'key': 'a', 'code': 'KeyQ', 'windowsVirtualKeyCode': 65}),  # a French keyboard

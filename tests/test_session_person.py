@@ -23,7 +23,11 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
     session.expect('left side down')
     time.sleep(0.5)  # the moment is held for a while
     session.type(b'q')
-    session.expect('TEST')
+    session.expect('Press q again')
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
+    session.type(b'q')
+    session.expect('The teaching ends with this episode')
+    session.expect('Writing the report')
     session.process.wait(120)
     assert session.process.returncode == 0, session.shown[-3000:]
 

@@ -3,7 +3,7 @@
 Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench and /target_wrench, publishes
 /agent/target_wrench and /training/*, rests and resets the simulator between episodes. Services (Trigger):
 learner/start: end the practice; learner/repeat: start the episode over; learner/finish: end the teaching after this
-episode.
+episode; learner/keep_teaching: take that back.
 """
 
 import time
@@ -76,6 +76,9 @@ class PpoAgentNode(Callbacks):
         self._practises = declare(
             node, 'practice', False, 'Before a new learner is taught, the person alone moves the tray until '
             'learner/start is called (3.4).')
+        self._break_seconds = declare(
+            node, 'break_seconds', 0.0, 'Before the first and between all episodes at least, with the time that '
+            'learning takes: for a person to read how it went, and to get ready.', unit='s', minimum=0.0, maximum=60.0)
         output = declare(
             node, 'output', '', f'Folder for {POLICY_NAME} and {TABLE_NAME}; a learner that is there goes on. Empty: '
             'nothing is kept.')
@@ -96,6 +99,8 @@ class PpoAgentNode(Callbacks):
         self._episode: Episode | None = None
         self._finish = False
         self._repeat = False
+        self._ended = 0.0
+        """When the last episode of teaching did, s of the monotonic clock."""
         self._training = TrainingTopics(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
         self._background = Background(node)
@@ -104,6 +109,7 @@ class PpoAgentNode(Callbacks):
         node.create_service(Trigger, contract.START_SERVICE, self._on_start)
         node.create_service(Trigger, contract.REPEAT_SERVICE, self._on_repeat)
         node.create_service(Trigger, contract.FINISH_SERVICE, self._on_finish)
+        node.create_service(Trigger, contract.KEEP_TEACHING_SERVICE, self._on_keep_teaching)
 
     def _make_learner(self, chosen: Preset, seed: int, output: str, resume: bool) -> Learner:
         """A new learner, or the one in the output folder."""
@@ -136,6 +142,7 @@ class PpoAgentNode(Callbacks):
             self._wait()
             if self._teaches:
                 self._practise()
+                self._take_a_break(time.monotonic())
                 task = replace(self._learner.task, episode_seconds=self._episode_seconds)
                 learn(self._learner, SharedControlEnv(self._plant, task), self._episodes or None, self)
             if self._test_episodes:
@@ -162,6 +169,18 @@ class PpoAgentNode(Callbacks):
                     failed = env.step(hands_off)[-1]['failed']
             except PlantInterrupted as error:
                 self.interrupted(error)
+
+    def _take_a_break(self, since: float) -> None:
+        """Let the break that began at ``since`` (monotonic clock, s) come to its end, and count it down."""
+        if not self._break_seconds:
+            return
+        if self._training.phase != 'learn':
+            self._training.enter('wait')
+            self._plant.rest()
+        while (left := since + self._break_seconds - time.monotonic()) > 0.0:
+            time.sleep(min(left, 0.1))  # first: screens are to know the episode's own last time
+            self._attend()
+            self._training.time_left(max(since + self._break_seconds - time.monotonic(), 0.0))
 
     def _test(self) -> None:
         env = SharedControlEnv(self._plant, as_tested(self._learner.task))
@@ -190,6 +209,12 @@ class PpoAgentNode(Callbacks):
     def _on_repeat(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success = self._repeat = self._training.phase in ('teach', 'test')
         response.message = 'the episode starts over' if self._repeat else 'there is no episode to start over'
+        return response
+
+    def _on_keep_teaching(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success = self._finish and self._training.phase in ('teach', 'learn', 'wait')
+        self._finish = self._finish and not response.success
+        response.message = 'the teaching goes on' if response.success else 'the teaching was not to end, or has ended'
         return response
 
     def _on_finish(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -225,6 +250,7 @@ class PpoAgentNode(Callbacks):
 
     def learning_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
+        self._ended = time.monotonic()
         self._training.episode_return(episode.episode_return)
         self._training.enter('learn')
         self._plant.rest()
@@ -238,12 +264,14 @@ class PpoAgentNode(Callbacks):
         self.node.get_logger().info(
             f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '
             f'learned in {episode.learn_seconds:.2f} s')
+        self._take_a_break(self._ended)
 
     def episode_tested(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
         self._training.episode_return(episode.episode_return)
         if self._table is not None:
             self._table.append(episode)
+        self._take_a_break(time.monotonic())
 
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""

@@ -35,8 +35,12 @@ class TrainingTopics:
 
     def progress(self, seconds_left: float, human_share: float) -> None:
         """How the episode stands."""
-        self._time_left.publish(Float64(data=seconds_left))
+        self.time_left(seconds_left)
         self._share.publish(Float64(data=human_share))
+
+    def time_left(self, seconds: float) -> None:
+        """What is left of the episode, or until the next one begins."""
+        self._time_left.publish(Float64(data=seconds))
 
     def episode_return(self, value: float) -> None:
         """An episode has ended."""

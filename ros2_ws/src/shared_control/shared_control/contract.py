@@ -73,11 +73,12 @@ APPLIED_WRENCH = Topic(
     'target_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent, screens', 'on change, 100 Hz',
     'their sum as applied, N m')
 HUMAN_APPLIED = Topic(
-    'human/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent', 'with `/target_wrench`',
+    'human/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent, screens',
+    'with `/target_wrench`',
     "M_yh as it counted in the sum, N m: the person's part, faded when stale, before the sum is clamped")
 AGENT_APPLIED = Topic(
-    'agent/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent', 'with `/target_wrench`',
-    "M_yai as it counted in the sum, N m: the agent's part, likewise")
+    'agent/applied_wrench', 'geometry_msgs/msg/WrenchStamped', 1000, 'controller', 'agent, screens',
+    'with `/target_wrench`', "M_yai as it counted in the sum, N m: the agent's part, likewise")
 BALL = Topic(
     'ball', 'nav_msgs/msg/Odometry', 100, 'robot', 'agent, tutor, screens, views', '100 Hz',
     'm, m/s in `panda_link0`')
@@ -97,7 +98,8 @@ PHASE = Topic(
     'training/phase', 'std_msgs/msg/String', 100, 'agent', '', 'on change',
     '`practice`, `teach`, `learn`, `test`, `wait`, `done`', latched=True)
 TIME_LEFT = Topic(
-    'training/time_left', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz', 's, of the episode', latched=True)
+    'training/time_left', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz',
+    's, of the episode; in `learn` and `wait` until the next one begins', latched=True)
 EPISODE_RETURN = Topic(
     'training/episode_return', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of an episode',
     'sum of the unscaled reward', latched=True)
@@ -132,6 +134,8 @@ LEARNER_START = Service('learner/start', _TRIGGER, 'agent', 'end the practice, t
 LEARNER_REPEAT = Service('learner/repeat', _TRIGGER, 'agent', 'the episode is void: start it over, with the same ball')
 LEARNER_FINISH = Service(
     'learner/finish', _TRIGGER, 'agent', 'end the teaching after this episode; then test, and leave')
+LEARNER_KEEP_TEACHING = Service(
+    'learner/keep_teaching', _TRIGGER, 'agent', 'take `learner/finish` back, while the episode lasts')
 CONTROLLER_ENABLE = Service('controller/enable', _SET_BOOL, 'controller', 'send torques, or none')
 CONTROLLER_STOP = Service(
     'controller/emergency_stop', _TRIGGER, 'controller', 'disable, until it is reset; wins over `controller/enable`')
@@ -141,5 +145,5 @@ ROBOT_ENABLE = Service('robot/enable', _SET_BOOL, 'bridge, mock', 'move the arm,
 ROBOT_RECOVERY = Service('robot/error_recovery', _TRIGGER, 'bridge, mock', 'leave a reflex stop')
 
 SERVICES = (
-    RESET, PAUSE, REST, SEED, LEARNER_START, LEARNER_REPEAT, LEARNER_FINISH, CONTROLLER_ENABLE, CONTROLLER_STOP,
-    CONTROLLER_RESET, ROBOT_ENABLE, ROBOT_RECOVERY)
+    RESET, PAUSE, REST, SEED, LEARNER_START, LEARNER_REPEAT, LEARNER_FINISH, LEARNER_KEEP_TEACHING, CONTROLLER_ENABLE,
+    CONTROLLER_STOP, CONTROLLER_RESET, ROBOT_ENABLE, ROBOT_RECOVERY)

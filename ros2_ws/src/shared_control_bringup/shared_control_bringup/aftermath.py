@@ -20,7 +20,8 @@ from shared_control_sim.local_plant import LocalPlant
 class _Progress(Callbacks):
     """A bar on a terminal; asks at every step whether to go on."""
 
-    def __init__(self, episodes: int, attend: Callable[[], None]):
+    def __init__(self, folder: SessionFolder, episodes: int, attend: Callable[[], None]):
+        self._folder = folder
         self._episodes = episodes
         self._attend = attend
 
@@ -29,9 +30,16 @@ class _Progress(Callbacks):
         self._attend()
 
     def episode_tested(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        tell_page(self._folder, 'testing', tested=episode.number, of=self._episodes)
         if sys.stdout.isatty():
             bar = '#' * episode.number + '.' * (self._episodes - episode.number)
             print(f'\rtesting the robot alone [{bar}]', end='' if episode.number < self._episodes else '\n', flush=True)
+
+
+def tell_page(folder: SessionFolder, stage: str, **figures: int | None) -> None:
+    """Tell the page of the session what is being done after the teaching (``teach_page_node.ending``)."""
+    write_atomically(folder.ending, json.dumps({'stage': stage, **figures}).encode())
 
 
 def test_policy(folder: SessionFolder, episodes: int, physics: str, attend: Callable[[], None]) -> None:
@@ -41,11 +49,12 @@ def test_policy(folder: SessionFolder, episodes: int, physics: str, attend: Call
     then leaves nothing behind.
     """
     attend()
+    tell_page(folder, 'testing', tested=0, of=episodes)
     learner = load_policy(folder.policy)
     robot = load_robot(folder.ros_parameters('panda_sim_node').get('robot', 'panda'))
     env = SharedControlEnv(LocalPlant(learner.task, physics=physics, robot=robot), as_tested(learner.task))
     try:
-        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(episodes, attend)), folder.test)
+        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(folder, episodes, attend)), folder.test)
     finally:
         env.close()
 

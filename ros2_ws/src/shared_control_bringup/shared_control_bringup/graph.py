@@ -54,6 +54,8 @@ class SessionNode:
     """Starts when this node is ready; empty: at once."""
 
 
+BREAK_SECONDS = 3.0
+"""Before and between episodes, when a person teaches, s."""
 BESIDE_A_SIMULATOR = {'enabled': True}
 """Parameters of the controller where whoever starts it also starts a simulator. Nowhere else is it enabled without a
 person."""
@@ -78,16 +80,17 @@ NODES = (
         Role.CONTROL_LOOP, after='session_recorder_node'),
     SessionNode('teleop_key_node', lambda s: {
         'task': _of_the_task(s.settings)['task'],
-        'screen': 'auto' if s.shows_screen else 'off'}, Role.FOREGROUND),
+        'screen': 'auto' if s.shows_screen else 'off', 'in_session': True}, Role.FOREGROUND),
     SessionNode('sim_tutor_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'profile': s.settings.profile,
         'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {
-        'task': _of_the_task(s.settings)['task'], 'host': s.settings.page[0], 'port': s.settings.page[1]}, Role.STOPPER,
-        tutor='page'),
+        'task': _of_the_task(s.settings)['task'], 'host': s.settings.page[0], 'port': s.settings.page[1],
+        'session': str(s.folder.path)}, Role.STOPPER, tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {
         'task': s.settings.task, 'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
         'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',
+        'break_seconds': BREAK_SECONDS if s.settings.tutor in ('keyboard', 'page') else 0.0,
         'output': str(s.folder.learner)}, Role.LEADER),
 )
 """In the order in which they start, side by side: all wait for the simulator, which begins the time, and this for the

@@ -17,10 +17,15 @@ from . import parameters as ros_parameters
 from .graph import overrides
 from .interrupts import Interrupts
 from .neighbours import Neighbours
+from .node_process import NodeProcess
 from .options import given_settings, refuse_options_of_new_sessions
 from .page import Page
 from .settings import Settings
-from .teaching import End, teach
+from .supervisor import STOP_SECONDS
+from .teaching import POLL_SECONDS, End, teach
+
+PAGE_SECONDS = 600.0
+"""How long the page stays for a person who has left it open, s."""
 
 
 def run(args: argparse.Namespace) -> int:
@@ -59,8 +64,25 @@ def run(args: argparse.Namespace) -> int:
             folder.claim()
         ros_parameters.save(parameters, folder.parameters)
         print(f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
-        end, restarts = _teach(settings, folder, shows_screen, page, interrupts)
-        return _report(folder, end, restarts, settings, interrupts).value
+        end, restarts, page_node = _teach(settings, folder, shows_screen, page, interrupts)
+        try:
+            end = _report(folder, end, restarts, settings, interrupts)
+            if end is End.DONE and page is not None and page_node is not None:
+                _keep_open(page, page_node, interrupts)
+        finally:
+            if page_node is not None:
+                page_node.interrupt()
+                page_node.wait(STOP_SECONDS)
+            folder.ending.unlink(missing_ok=True)
+        return end.value
+
+
+def _keep_open(page: Page, node: NodeProcess, interrupts: Interrupts) -> None:
+    """Leave the page where it is until it is closed, or nobody looks at it any more."""
+    print(f'The page stays open until it is closed there, or Ctrl-C: {page.address}', flush=True)
+    until = time.monotonic() + PAGE_SECONDS
+    while node.exit_code() is None and time.monotonic() < until and not interrupts.requested:
+        time.sleep(POLL_SECONDS)
 
 
 def _test_only(settings: Settings, folder: SessionFolder) -> int:
@@ -95,16 +117,17 @@ def _is_taught(settings: Settings, folder: SessionFolder, given: dict[str, Any])
 
 
 def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: Page | None,
-           interrupts: Interrupts) -> tuple[End, int]:
-    """Teach, and keep in the folder whether that came to its end; how it ended, and restarts of nodes in all."""
+           interrupts: Interrupts) -> tuple[End, int, NodeProcess | None]:
+    """Teach, and keep in the folder whether that came to its end; see :func:`.teaching.teach`, restarts in all."""
     earlier_restarts = _earlier_restarts(folder)
     folder.write_settings(replace(settings, taught=False).to_json())
-    end, restarts = teach(folder, settings.tutor, shows_screen, page, interrupts)
+    folder.ending.unlink(missing_ok=True)
+    end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts)
     times = [path.stat().st_mtime_ns for path in (folder.test, folder.policy) if path.exists()]
     if times != sorted(times, reverse=True):
         folder.test.unlink()  # the policy has learned since
     folder.write_settings(replace(settings, taught=end is End.DONE).to_json())
-    return end, restarts + earlier_restarts
+    return end, restarts + earlier_restarts, page_node
 
 
 def _earlier_restarts(folder: SessionFolder) -> int:
@@ -117,7 +140,7 @@ def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, 
     # Imported late: torch and matplotlib take seconds, and the person wants to begin.
     from shared_control_records.session.report import write_report
 
-    from .aftermath import describe_policy, tell_summary, test_policy
+    from .aftermath import describe_policy, tell_page, tell_summary, test_policy
     try:
         if end is not End.FAILED:
             describe_policy(folder)
@@ -126,8 +149,12 @@ def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, 
                 test_policy(folder, settings.test_episodes, settings.physics, interrupts.check)
             except KeyboardInterrupt:
                 end = End.STOPPED
+        tell_page(folder, 'reporting')
+        print('Writing the report ...', flush=True)
         _complete_bag(folder, restarts)
-        tell_summary(folder, write_report(folder, restarts))
+        summary = write_report(folder, restarts)
+        tell_summary(folder, summary)
+        tell_page(folder, 'over', of=summary.autonomous_episodes, successes=summary.autonomous_success)
     finally:
         if end is not End.DONE:
             print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)

@@ -92,9 +92,11 @@ class Supervisor:
         self._say(f'{node.name} died ({_meaning(code)}); starting it again')
         node.start()
 
-    def stop(self) -> None:
-        """Stop the nodes, the last one started first, and wait for each."""
+    def stop(self, but: str = '') -> None:
+        """Stop the nodes, the last one started first, and wait for each; leave the one called ``but`` alone."""
         for node in reversed(self._nodes):
+            if node.name == but:
+                continue
             node.interrupt()
             node.wait(STOP_SECONDS)
 

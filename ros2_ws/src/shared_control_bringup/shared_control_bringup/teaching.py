@@ -27,7 +27,7 @@ class End(Enum):
 
 
 def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | None,
-          interrupts: Interrupts) -> tuple[End, int]:
+          interrupts: Interrupts) -> tuple[End, int, NodeProcess | None]:
     """Run the graph until the agent is done or somebody stops it.
 
     Args:
@@ -38,7 +38,7 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
         interrupts: how somebody stops it from the terminal, or by a signal.
 
     Returns:
-        How it ended, and how often nodes were started again.
+        How it ended, how often nodes were started again, and the node of the page when that stays for the result.
     """
     paced = ros_parameters.load(folder.parameters)['panda_sim_node'].get('paced', True)
     environment = page.environment if page else {}
@@ -63,8 +63,12 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
 
     supervisor = Supervisor(nodes, leader=leader, stopper=stopper, say=say, attend=attend)
     error: SessionError | None = None
+    end = End.FAILED
+    began = time.monotonic()
     try:
+        print('Starting simulator, controller and learner: about 10 s ...', flush=True)
         supervisor.start()
+        say(f'all nodes are ready ({time.monotonic() - began:.0f} s)')
         if page:
             print(f'\n    Teach here: {page.address}\n', flush=True)  # with the token, hence not into the log
         waits.open()
@@ -79,10 +83,11 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
         end, error = End.FAILED, problem
     finally:
         waits.close()
-        supervisor.stop()
+        stays = stopper if page and end is End.DONE else ''
+        supervisor.stop(but=stays)
         episodes.poll()
         log.close()
     if error is not None:
         print(f'shared-control: {error}', file=sys.stderr)
-    return end, supervisor.restarts
+    return end, supervisor.restarts, next((node for node in nodes if node.name == stays), None)
 

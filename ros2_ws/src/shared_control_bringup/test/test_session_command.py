@@ -32,7 +32,7 @@ def session(monkeypatch):
         run.page = page
         run.taught += 1
         folder.release()
-        return run.end, 0
+        return run.end, 0, None
 
     def run(*arguments):
         monkeypatch.setattr('sys.argv', ['shared-control', 'session', *map(str, arguments)])

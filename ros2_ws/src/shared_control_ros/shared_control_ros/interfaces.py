@@ -7,10 +7,11 @@ from .contract import Topic
 
 DISPLAYED = (
     contract.JOINT_STATES_THROTTLE, contract.BALL, contract.HUMAN_WRENCH, contract.AGENT_WRENCH,
-    contract.APPLIED_WRENCH)
+    contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED)
 SIMULATOR = (contract.RESET_SERVICE, contract.PAUSE_SERVICE, contract.REST_SERVICE, contract.SEED_SERVICE)
 CONTROLLER = (
     contract.ENABLE_SERVICE, contract.EMERGENCY_STOP_SERVICE, contract.RESET_EMERGENCY_STOP_SERVICE)
+LEARNER = (contract.START_SERVICE, contract.REPEAT_SERVICE, contract.FINISH_SERVICE, contract.KEEP_TEACHING_SERVICE)
 ROBOT = (contract.JOINT_STATES, contract.JOINT_STATES_THROTTLE, contract.DIAGNOSTICS)
 
 
@@ -47,12 +48,12 @@ INTERFACES = {
     'teleop_key_node': Interface(
         publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.DIAGNOSTICS),
         subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),
-        calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
+        calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'ppo_agent_node': Interface(
         publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
                     contract.APPLIED_WRENCH),
-        serves=(contract.START_SERVICE, contract.REPEAT_SERVICE, contract.FINISH_SERVICE),
+        serves=LEARNER,
         calls=(contract.RESET_SERVICE, contract.REST_SERVICE, contract.SEED_SERVICE)),
     'sim_tutor_node': Interface(
         publishes=(contract.KEYS, contract.DIAGNOSTICS),
@@ -61,7 +62,7 @@ INTERFACES = {
     'teach_page_node': Interface(
         publishes=(contract.KEYS,),
         subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),
-        calls=(contract.PAUSE_SERVICE, contract.FINISH_SERVICE, contract.START_SERVICE, contract.REPEAT_SERVICE)),
+        calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), subscribes=contract.BAG_TOPICS),
     'robot_view_node': Interface(
         publishes=('robot_description', 'markers', '/tf', contract.DIAGNOSTICS), subscribes=DISPLAYED),
@@ -72,6 +73,6 @@ INTERFACES = {
         publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE),
         subscribes=contract.TOPICS,
         calls=(*CONTROLLER, contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE, contract.RESET_SERVICE,
-               contract.PAUSE_SERVICE, contract.FINISH_SERVICE)),
+               contract.PAUSE_SERVICE, contract.FINISH_SERVICE, contract.KEEP_TEACHING_SERVICE)),
 }
 """By name of the node; ``operator`` is a person with the ros2 command."""

@@ -68,6 +68,11 @@ class Browser:
         self.driver.get(address)
         self.wait(lambda: self.script('return window.teachPage?.picture?.q'), 'a picture')
 
+    def size(self, width: int, height: int) -> None:
+        """Make the window show a page of so many CSS pixels: less than that of a screen that is enlarged."""
+        self.driver.execute_cdp_cmd('Emulation.setDeviceMetricsOverride', {
+            'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': False})
+
     def open_tab(self, address: str) -> str:
         """Open the page in a second tab, which is then in front; its handle."""
         self.driver.switch_to.new_window('tab')

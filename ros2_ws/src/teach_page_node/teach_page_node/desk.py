@@ -1,10 +1,12 @@
 """What the page's server needs from whoever stands behind it: a running graph, or a recorded session."""
 
+from pathlib import Path
 from typing import Any, Protocol
 
 from shared_control.tasks.task import Task
 
 from .picture import Picture
+from .showing import Showing
 
 
 class Desk(Protocol):
@@ -13,8 +15,17 @@ class Desk(Protocol):
     is_replay: bool
     task: Task
     """What is taught."""
+    showing: Showing
+    """What people are shown besides what moves."""
     is_over: bool
     """The server is to end."""
+
+    @property
+    def is_finished(self) -> bool:
+        """Everything is done: the server is there for those who still look."""
+
+    def file(self, name: str) -> Path | None:
+        """A file of the session that people may see by now."""
 
     def look(self) -> Picture:
         """What is to be seen now; called once a picture."""

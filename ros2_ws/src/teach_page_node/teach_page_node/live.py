@@ -1,6 +1,7 @@
 """The running graph: what the page shows of it, and what it may ask for."""
 
 import time
+from pathlib import Path
 from typing import Any
 
 from rclpy.duration import Duration
@@ -15,9 +16,11 @@ from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Moment, Observer
 from shared_control_ros.watching.scene import Scene
 
+from .ending import Ending
 from .history import History
 from .page_requests import PageRequests
 from .picture import LIT_FOR, Picture
+from .showing import Showing
 
 SOURCE = 'page'
 """The frame_id of the page's keys."""
@@ -30,8 +33,12 @@ class LiveDesk:
 
     is_replay = False
 
-    def __init__(self, node: Node, task: Task = BALANCE):
+    def __init__(self, node: Node, task: Task = BALANCE, showing: Showing = Showing(),
+                 session: Path | None = None):
         self.is_over = False
+        self.showing = showing
+        self._ending = Ending(session, showing.shows_result)
+        self._stage = ''
         self.task = task
         self._node = node
         self._observer = Observer(node, task)
@@ -60,18 +67,23 @@ class LiveDesk:
         self._lesson.update()
         now = time.monotonic()
         scene = self._scene
+        scene.phase, scene.episode = self._lesson.phase, self._lesson.episode
         self._follow(scene)
+        full = self.showing.feedback == 'full'
         self._hear_keys(now)
         if now > self._notice_until:
             scene.message = ''
         return Picture(
             q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch, tilt=scene.tilt,
-            human=self._human.update(now), agent=scene.agent, applied=scene.applied,
-            phase=self._lesson.phase, episode=self._lesson.episode, time_left=scene.time_left,
-            human_share=scene.human_share, success=scene.success, keys=[int(now < lit) for lit in self._lit_until],
+            asked=self._human.update(now), parts=scene.parts if full else None,
+            phase=scene.phase, episode=scene.episode, time_left=scene.time_left, next_in=scene.next_in,
+            outcome=None if self.showing.feedback == 'none' else scene.outcome,
+            ends_teaching=self._requests.ending, ending=self._ended(now),
+            human_share=scene.human_share if full else None, success=scene.success if full else None,
+            keys=[int(now < lit) for lit in self._lit_until],
             hand=self._hand, paused=self._requests.paused, silent_for=scene.simulator_silent_for,
             notice=scene.message.strip() or (f'Waiting {scene.waiting}'.replace('\n', ': ') if scene.waiting else ''),
-            time=max(self._observer.stamp_ns, 0) * 1e-9, history=self._history)
+            time=max(self._observer.stamp_ns, 0) * 1e-9, history=self._history if full else History())
 
     def _follow(self, scene: Scene) -> None:
         """Bring the scene and the list of episodes up to date."""
@@ -85,9 +97,23 @@ class LiveDesk:
         if self._requests.paused and self._observer.stamp_ns > self._paused_stamp_ns + 500_000_000:
             self._requests.paused = False  # somebody else let it go on
         new = scene.returns[known:]
-        if self._lesson.phase not in ('test', 'done'):
+        if scene.phase not in (None, 'teach', 'learn'):
+            self._requests.ending = False
+        if scene.phase not in ('test', 'done'):
             for value in new:
                 self._history.add(value, share if len(new) == 1 else None)
+
+    @property
+    def is_finished(self) -> bool:
+        """See :class:`Desk`."""
+        return (self._ending.look(time.monotonic()) or {}).get('stage') == 'over'
+
+    def file(self, name: str) -> Path | None:
+        """See :class:`Desk`."""
+        return self._ending.file(name)
+
+    def _ended(self, now: float) -> dict[str, Any] | None:
+        return {'stage': self._stage} if self._stage else self._ending.look(now)
 
     def _hear_keys(self, now: float) -> None:
         while (joy := self._heard.take()) is not None:
@@ -124,19 +150,24 @@ class LiveDesk:
             self._requests.toggle_pause()
         elif command == 'repeat':
             if self._requests.paused:
-                self._requests.toggle_pause()
-            self._requests.repeat()
+                self._tell('It is paused: go on first.')
+            else:
+                self._requests.repeat()
         elif command == 'start':
             self._requests.start()
         elif command == 'finish':
             self._requests.finish()
+        elif command == 'keep_teaching':
+            self._requests.keep_teaching()
         elif command == 'stop':
-            self.is_over = True
+            self.is_over, self._stage = True, 'stopped'
+        elif command == 'close':
+            self.is_over, self._stage = True, 'closed'
         else:
             raise ValueError(f'no command {command!r}')
 
     def _tell(self, text: str) -> None:
-        self._scene.message = text
+        self._scene.message = text[:1].upper() + text[1:]
         self._notice_until = time.monotonic() + NOTICE_FOR
 
     def close(self) -> None:

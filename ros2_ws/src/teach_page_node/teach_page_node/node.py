@@ -6,6 +6,7 @@ started it; one page teaches, others watch.
 
 import asyncio
 import os
+from pathlib import Path
 
 from rclpy.node import Node
 from shared_control_ros.parameters import declare
@@ -15,6 +16,7 @@ from shared_control_ros.task_parameter import declare_task
 from .address import TOKEN_VARIABLE
 from .live import LiveDesk
 from .server import PageServer
+from .showing import FEEDBACK, Showing
 
 
 class TeachPageNode:
@@ -30,7 +32,15 @@ class TeachPageNode:
                         'empty: taken from the environment, or one that stays for whoever starts the node again.')
         frame_rate = declare(
             node, 'frame_rate', 40.0, 'Pictures that are sent.', unit='Hz', minimum=1.0, maximum=100.0)
-        self._desk = LiveDesk(node, declare_task(node, 'What is taught: the tray, and the keys.'))
+        session = declare(node, 'session', '', 'Folder of the session, of whose end and result the page tells; empty: '
+                          'there is none.')
+        showing = Showing(
+            declare(node, 'feedback', 'full', 'What the page tells besides tray, ball and keys. ball: how each episode '
+                    "ended. full: and the robot's push, human share, score and tests.", choices=FEEDBACK),
+            bool(session),
+            declare(node, 'shows_result', True, 'Show test, picture and report in the end.'))
+        task = declare_task(node, 'What is taught: the tray, and the keys.')
+        self._desk = LiveDesk(node, task, showing, Path(session) if session else None)
         given = os.environ.get(TOKEN_VARIABLE, '')
         self._tells_address = not given  # otherwise whoever gave it tells: a session keeps what this node says
         self._server = PageServer(self._desk, host, port, frame_rate, given or token)

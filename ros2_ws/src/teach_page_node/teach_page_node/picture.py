@@ -1,13 +1,14 @@
 """What the page shows at one moment, as the browser gets it."""
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
+from shared_control_ros.watching.outcome import Outcome
+from shared_control_ros.watching.scene import Moments, Parts
 
 from .history import History
 
-Moments = tuple[float, ...]
 LIT_FOR = 0.15
 """A key that was pressed is lit for this long at least, s."""
 
@@ -26,16 +27,22 @@ class Picture:
     """Pitch of the tray, rad; positive: the left of the picture (base +x) is down."""
     tilt: float | None = None
     """How far the tray is from level, rad."""
-    human: Moments | None = None
-    """Along the task's axes, (k,), N m"""
-    agent: Moments | None = None
-    """Likewise."""
-    applied: Moments | None = None
-    """The sum as the controller applies it, likewise."""
+    asked: Moments | None = None
+    """The push that the person's keys have added up to, along the task's axes, (k,), N m"""
+    parts: Parts | None = None
+    """What the controller used of both at one tick, and the sum."""
     phase: str | None = None
     episode: int | None = None
     time_left: float | None = None
     """What is left of the episode, s."""
+    next_in: float | None = None
+    """Until the next episode begins, s."""
+    outcome: Outcome | None = None
+    """How the last episode ended."""
+    ends_teaching: bool = False
+    """Whether the teaching ends with this episode."""
+    ending: dict[str, Any] | None = None
+    """What becomes of the session after the teaching."""
     human_share: float | None = None
     """0..1"""
     success: float | None = None
@@ -53,18 +60,27 @@ class Picture:
     history: History = field(default_factory=History)
     replay: dict[str, Any] | None = None
     """Position, length (s), speed and whether it plays."""
+    trace: list[list[float | None]] | None = None
+    """Time and moments of the seconds before, when a replay has jumped there; None: nothing has changed."""
 
     def message(self) -> dict[str, Any]:
         """For the browser, without the history."""
         return {
             'q': _rounded(self.q), 'ball': _rounded(self.ball), 'on_tray': _rounded(self.ball_on_tray),
             'pitch': _rounded(self.pitch), 'tilt': _rounded(self.tilt),
-            'human': _rounded(self.human), 'agent': _rounded(self.agent),
-            'applied': _rounded(self.applied), 'phase': self.phase, 'episode': self.episode,
+            'asked': _rounded(self.asked), **self._moments(), 'phase': self.phase, 'episode': self.episode,
+            'next_in': _rounded(self.next_in), 'outcome': None if self.outcome is None else asdict(self.outcome),
+            'ends_teaching': self.ends_teaching, 'ending': self.ending, 'trace': self.trace,
             'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share),
             'success': _rounded(self.success), 'keys': self.keys, 'hand': self.hand,
             'paused': self.paused, 'silent_for': _rounded(self.silent_for),
             'notice': self.notice, 'time': _rounded(self.time), 'replay': self.replay}
+
+    def _moments(self) -> dict[str, Any]:
+        """Those of one tick, or none at all."""
+        names = Parts._fields
+        values = [None] * 3 if self.parts is None else [_rounded(moment) for moment in self.parts]
+        return dict(zip(names, [None] * 3 if None in values else values, strict=True))
 
 
 def _rounded(value: float | np.ndarray | Moments | None) -> Any:

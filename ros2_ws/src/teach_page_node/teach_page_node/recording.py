@@ -7,13 +7,17 @@ from shared_control import contract
 from shared_control.keys import count_buttons
 from shared_control.robot.model import RobotModel, pitch
 from shared_control_records.bag.reader import Bag, BagReadError
-from shared_control_records.bag.recorded import Series, Wrenches
+from shared_control_records.bag.recorded import Series
+from shared_control_ros.watching.outcome import Outcome, outcome_of
+from shared_control_ros.watching.scene import Parts
 
 from .history import History
-from .picture import LIT_FOR, Moments, Picture
+from .picture import LIT_FOR, Picture
 
 LONGEST_STILL = 2.0
 """As much is played of a longer gap in the recording (between two runs of a session), s."""
+TRACE_PERIOD = 0.05
+"""s"""
 STALE_AFTER = 0.2
 """The controller repeats its moments; it was not there when they are older, s of the recorder's clock."""
 
@@ -43,25 +47,80 @@ class Recording:
 
     def picture(self, seconds: float) -> Picture:
         """What was to be seen so many seconds after the beginning."""
-        index = int(np.searchsorted(self._elapsed, seconds, 'right')) - 1
-        within = min(seconds - self._elapsed[index], LONGEST_STILL)
-        now_ns = int(self._received[index] + within * 1e9)
+        index, now_ns = self._at(seconds)
         q = self._bag.joint_states.q[index]
         origin, rotation = self._model.tray_pose(q)
-        ball = self._bag.ball.position[_before(self._bag.ball.received_ns, now_ns) or 0]
+        ball = self._ball(now_ns)
         keys, hand = self._keys(now_ns)
         training = self._bag.training
+        phase = _latest(training[contract.PHASE], now_ns)
         return Picture(
             q=q, ball=ball, ball_on_tray=rotation.T @ (ball - origin), pitch=pitch(rotation),
             tilt=math.acos(min(float(rotation[2, 2]), 1.0)),
-            human=_moment(self._bag.human_applied, now_ns),
-            agent=_moment(self._bag.agent_applied, now_ns),
-            applied=_moment(self._bag.applied, now_ns),
-            phase=_latest(training[contract.PHASE], now_ns), episode=_latest(training[contract.EPISODE], now_ns),
-            time_left=_latest(training[contract.TIME_LEFT], now_ns),
+            parts=self._parts(now_ns), phase=phase, episode=_latest(training[contract.EPISODE], now_ns),
+            time_left=_latest(training[contract.TIME_LEFT], now_ns), outcome=self._outcome(phase, now_ns),
             human_share=_latest(training[contract.HUMAN_SHARE], now_ns),
             success=_latest(training[contract.SUCCESS], now_ns), keys=keys, hand=hand, time=seconds,
             history=self._history(now_ns))
+
+    def trace(self, seconds: float, back: float) -> list[list[float | None]]:
+        """Time and all moments, every 0.05 s of the ``back`` seconds before, as the chart of the page has them."""
+        rows: list[list[float | None]] = []
+        for at in np.arange(max(seconds - back, 0.0), seconds, TRACE_PERIOD):
+            parts = self._parts(self._at(float(at))[1])
+            moments = [None] * (3 * len(self.task.axes)) if parts is None else [
+                round(value, 4) for moment in parts for value in moment]
+            rows.append([round(float(at), 4), *moments])
+        return rows
+
+    def marks(self) -> list[tuple[float, str]]:
+        """Where episodes begin, s, and their names: numbers, and T1, T2 ... for tests."""
+        episodes, phases = (self._bag.training[topic] for topic in (contract.EPISODE, contract.PHASE))
+        found = []
+        for at_ns, number in zip(episodes.received_ns, episodes.values, strict=True):
+            name = 'T' if _latest(phases, int(at_ns)) == 'test' else ''
+            at = float(np.interp(at_ns, self._received, self._elapsed))
+            found.append((round(at, 2), f'{name}{int(number)}'))
+        return found
+
+    def _at(self, seconds: float) -> tuple[int, int]:
+        """The joint states of so many seconds after the beginning (index), and the recorder's clock then, ns."""
+        index = int(np.searchsorted(self._elapsed, seconds, 'right')) - 1
+        within = min(seconds - self._elapsed[index], LONGEST_STILL)
+        return index, int(self._received[index] + within * 1e9)
+
+    def _ball(self, now_ns: int) -> np.ndarray:
+        """Where the ball was, base frame, (3,), m."""
+        return self._bag.ball.position[_before(self._bag.ball.received_ns, now_ns) or 0]
+
+    def _parts(self, now_ns: int) -> Parts | None:
+        """The moments of the controller's newest tick; None when it was not there, or the bag has not all of them."""
+        bag = self._bag
+        index = _before(bag.applied.received_ns, now_ns)
+        if index is None or now_ns - bag.applied.received_ns[index] > STALE_AFTER * 1e9:
+            return None
+        stamp_ns = bag.applied.stamp_ns[index]
+        moments = []
+        for wrenches in (bag.human_applied, bag.agent_applied):
+            other = int(np.searchsorted(wrenches.stamp_ns, stamp_ns, 'right')) - 1
+            if other < 0:
+                return None
+            moments.append(tuple(wrenches.moment[other].tolist()))
+        human, agent = moments
+        return Parts(human, agent, tuple(bag.applied.moment[index].tolist()))
+
+    def _outcome(self, phase: str | None, now_ns: int) -> Outcome | None:
+        """How the last episode ended, as long as the next has not begun."""
+        training = self._bag.training
+        ended = _before(training[contract.EPISODE_RETURN].received_ns, now_ns)
+        if phase not in ('learn', 'wait') or ended is None:
+            return None
+        ended_ns = int(training[contract.EPISODE_RETURN].received_ns[ended])
+        lasted = _latest(training[contract.PHASE], ended_ns)
+        q = self._bag.joint_states.q[_before(self._received, ended_ns) or 0]
+        origin, rotation = self._model.tray_pose(q)
+        on_tray = rotation.T @ (self._ball(ended_ns) - origin)
+        return outcome_of(self.task, lasted, _latest(training[contract.TIME_LEFT], ended_ns), on_tray.tolist())
 
     def _keys(self, now_ns: int) -> tuple[list[int], str]:
         """Keys that are lit, and the source of the latest press."""
@@ -95,10 +154,3 @@ def _before(times_ns: np.ndarray, now_ns: int) -> int | None:
 def _latest(series: Series, now_ns: int):  # type: ignore[no-untyped-def]  # a number or a text, as the topic has it
     index = _before(series.received_ns, now_ns)
     return None if index is None else series.values[index].item()
-
-
-def _moment(wrenches: Wrenches, now_ns: int) -> Moments | None:
-    index = _before(wrenches.received_ns, now_ns)
-    if index is None or now_ns - wrenches.received_ns[index] > STALE_AFTER * 1e9:
-        return None
-    return tuple(wrenches.moment[index].tolist())

@@ -1,9 +1,16 @@
 """``shared-control replay``: a recorded session on the page, with a time slider and speed. Needs no ROS."""
 
 import argparse
+from contextlib import suppress
+from datetime import datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from shared_control_ros.host_and_port import host_and_port
+
+if TYPE_CHECKING:
+    from shared_control_records.bag.reader import Bag
+    from shared_control_records.session.folder import SessionFolder
 
 FRAME_RATE = 40.0
 """Hz"""
@@ -32,11 +39,34 @@ def run(args: argparse.Namespace) -> int:
     from .recording import Recording
     from .replay_desk import ReplayDesk
     from .server import PageServer
+    from .showing import Showing
     is_bag = args.folder.is_file() or (args.folder / 'metadata.yaml').is_file()
-    path = args.folder if is_bag else SessionFolder.open(args.folder).bag
+    folder = None if is_bag else SessionFolder.open(args.folder)
+    path = args.folder if folder is None else folder.bag
     print(f'Reading {path} ...', flush=True)
     host, port = args.page
-    server = PageServer(ReplayDesk(Recording(read_bag(path))), host, port, FRAME_RATE)
+    bag = read_bag(path)
+    recording = Recording(bag)
+    showing = Showing(title=_title(args.folder, folder, bag), marks=tuple(recording.marks()), tested=_tested(folder))
+    server = PageServer(ReplayDesk(recording, showing), host, port, FRAME_RATE)
     print(f'\n    Watch here: {server.address}\n\nCtrl-C ends the replay.', flush=True)
-    asyncio.run(server.serve(lambda: False))
+    with suppress(KeyboardInterrupt):  # that is how a replay ends
+        asyncio.run(server.serve(lambda: False))
     return 0
+
+
+def _title(given: Path, folder: 'SessionFolder | None', bag: 'Bag') -> str:
+    """Which recording it is: folder, day, tutor."""
+    parts = [given.resolve().name, f'{datetime.fromtimestamp(bag.start_ns * 1e-9):%Y-%m-%d %H:%M}']
+    settings = None if folder is None else folder.read_json(folder.settings)
+    if settings and settings.get('tutor'):
+        parts.append(f'tutor: {settings["tutor"]}')
+    return ' · '.join(parts)
+
+
+def _tested(folder: 'SessionFolder | None') -> str:
+    """What the final test came to; empty: there was none."""
+    from shared_control_records.session.final_test import load_test
+    test = None if folder is None else load_test(folder.test)
+    return '' if test is None else f'{test.successes} of {len(test.episodes)} tests'
+

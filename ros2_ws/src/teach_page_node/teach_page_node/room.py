@@ -64,6 +64,11 @@ class Room:
         """The name of the page that teaches, or did last."""
         self._history: dict[str, Any] = History().message()
 
+    @property
+    def has_visitors(self) -> bool:
+        """Whether a page is open."""
+        return bool(self._visitors)
+
     async def receive(self, socket: WebSocket) -> None:
         """Serve one page from its coming to its going."""
         await socket.accept()

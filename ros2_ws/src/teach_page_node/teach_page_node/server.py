@@ -5,7 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import uvicorn
-from fastapi import FastAPI, WebSocket
+from fastapi import FastAPI, HTTPException, WebSocket
+from fastapi.responses import FileResponse
 from fastapi.staticfiles import StaticFiles
 from nicegui import ui
 
@@ -18,6 +19,10 @@ from .room import Room
 STATIC = Path(__file__).parent / 'static'
 GONE_AFTER = 5.0
 """A browser that does not answer for this long is gone, s."""
+NOBODY_LOOKS = 20.0
+"""With everything done and no page open for as long, the server ends, s: a page that is loaded anew is back sooner."""
+LAST_WORDS = 0.3
+"""How long the last picture has to arrive, s."""
 RECONNECT_WITHIN = 30.0
 """NiceGUI loads the page anew when its own connection was lost for longer, s; a busy machine must not cause that."""
 
@@ -58,7 +63,14 @@ class PageServer:
         async def live(websocket: WebSocket) -> None:
             await self._room.receive(websocket)
 
-        ui.run_with(app, root=lambda: build(self._desk.is_replay, self._desk.task),
+        @app.get('/session/{name}')
+        async def session_file(name: str) -> FileResponse:
+            path = self._desk.file(name)
+            if path is None:
+                raise HTTPException(404, 'there is nothing to be seen (yet)')
+            return FileResponse(path)
+
+        ui.run_with(app, root=lambda: build(self._desk.is_replay, self._desk.task, self._desk.showing),
                     title='Teach the robot', tailwind=False, favicon='⚖️',
                     binding_refresh_interval=None, show_welcome_message=False, reconnect_timeout=RECONNECT_WITHIN)
         server = uvicorn.Server(uvicorn.Config(
@@ -71,11 +83,18 @@ class PageServer:
 
     async def _draw(self, server: uvicorn.Server, stop_requested: Callable[[], bool]) -> None:
         loop = asyncio.get_running_loop()
-        due = loop.time()
+        due = looked_at = loop.time()
         try:
             while not (server.should_exit or stop_requested() or self._desk.is_over):
                 self._room.show()
+                if self._room.has_visitors or not self._desk.is_finished:
+                    looked_at = loop.time()
+                elif loop.time() - looked_at > NOBODY_LOOKS:
+                    break
                 due = max(due + self._period, loop.time())
                 await asyncio.sleep(due - loop.time())
+            if self._desk.is_over:
+                self._room.show()  # pages are to know that it was meant
+                await asyncio.sleep(LAST_WORDS)
         finally:
             server.should_exit = True

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from shared_control_ros.watching.scene import Parts
 from teach_page_node.history import History
 from teach_page_node.picture import Picture
 
@@ -15,12 +16,13 @@ def refuse(constant):
 
 
 @pytest.mark.parametrize('picture', [
-    Picture(silent_for=INF), Picture(human=INF, agent=-INF, applied=NAN), Picture(success=NAN, human_share=NAN),
+    Picture(silent_for=INF), Picture(parts=Parts((INF,), (-INF,), (NAN,))), Picture(success=NAN, human_share=NAN),
     Picture(q=np.array([NAN] + 6 * [0.0]), ball=np.full(3, INF), ball_on_tray=np.full(3, NAN), pitch=NAN),
     Picture(time_left=INF, time=NAN)])
 def test_what_is_not_finite_is_left_out(picture):
     message = json.loads(json.dumps(picture.message()), parse_constant=refuse)
-    assert {key for key, value in message.items() if value is not None} <= {'keys', 'hand', 'paused', 'notice', 'time'}
+    assert {key for key, value in message.items() if value is not None} <= {
+        'keys', 'hand', 'paused', 'notice', 'time', 'ends_teaching'}
 
 
 def test_finite_numbers_are_rounded():

@@ -22,7 +22,7 @@ def test_a_picture_is_what_was_recorded(bag):
     one = lesson(seed=2)
     assert picture.phase == 'teach'
     assert picture.episode == 2
-    assert (picture.human, picture.agent) == ((one.m_y_human[25],), pytest.approx((one.m_y_agent[25],)))
+    assert picture.parts[:2] == ((one.m_y_human[25],), pytest.approx((one.m_y_agent[25],)))
     assert -picture.ball_on_tray[0] == pytest.approx(one.position_error[25], abs=1e-3)
     assert picture.history.returns == [-100.0]
     assert picture.message()['q'] == [round(angle, 4) for angle in picture.q.tolist()]
@@ -47,8 +47,8 @@ def test_a_gap_between_two_runs_is_shortened(tmp_path):
     made.messages += record([lesson(seed=2)], start_ns=made.messages[-1][1] + 3_600_000_000_000).messages
     recording = Recording(read_bag(made.write(tmp_path / 'bag')))
     assert recording.length == pytest.approx(6.0, abs=0.03)
-    assert recording.picture(3.0).agent is None, 'nobody spoke in the gap'
-    assert recording.picture(5.0).agent is not None
+    assert recording.picture(3.0).parts is None, 'nobody spoke in the gap'
+    assert recording.picture(5.0).parts is not None
 
 
 def test_a_bag_without_a_ball_is_refused(tmp_path):

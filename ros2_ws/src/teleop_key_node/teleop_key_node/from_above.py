@@ -58,7 +58,8 @@ def _dots(scene: Scene, width: int, height: int) -> np.ndarray:
         ball = np.clip(scene.ball_on_tray[:2], -reach, reach)
         dots |= np.hypot(x - ball[0], y - ball[1]) <= max(tray.ball.radius, 1.5 * dot)
     side = width / 8
-    for centre, moment in ((side, scene.human), (width - side, scene.agent)):
+    agent = None if scene.parts is None else scene.parts.agent
+    for centre, moment in ((side, scene.human), (width - side, agent)):
         if 2 * side < width / 2 - height / 2 + side and moment is not None:
             dots |= _arrow(scene, moment, centre, width, height)
     return dots

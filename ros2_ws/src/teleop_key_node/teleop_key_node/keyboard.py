@@ -14,6 +14,7 @@ class Stroke(Enum):
     UP = 'up'
     DOWN = 'down'
     SPACE = 'space'
+    START = 'start'
     FINISH = 'finish'
     PAUSE = 'pause'
     REDRAW = 'redraw'
@@ -22,6 +23,7 @@ class Stroke(Enum):
 _LETTERS = {
     b'a': Stroke.LEFT, b'A': Stroke.LEFT, b'd': Stroke.RIGHT, b'D': Stroke.RIGHT, b' ': Stroke.SPACE,
     b'w': Stroke.UP, b'W': Stroke.UP, b's': Stroke.DOWN, b'S': Stroke.DOWN,
+    b'\r': Stroke.START, b'\n': Stroke.START,
     b'q': Stroke.FINISH, b'Q': Stroke.FINISH, b'p': Stroke.PAUSE, b'P': Stroke.PAUSE, b'\x0c': Stroke.REDRAW}
 _ARROWS = {b'A': Stroke.UP, b'B': Stroke.DOWN, b'C': Stroke.RIGHT, b'D': Stroke.LEFT}
 

@@ -1,7 +1,8 @@
 """Teleoperation: turns the keys on /human/keys, or another device, into M_h on /human/target_wrench (50 Hz).
 
-With a terminal it reads the keys there as well and shows the lesson: arrows or a/d tip the tray, space lets go,
-q says that the robot has learned it, p pauses, Ctrl-C quits. The left key moves the ball to the left of the picture.
+With a terminal it reads the keys there as well and shows the lesson: arrows or a/d tip the tray, space takes the push
+away, Enter ends the practice, q the teaching, p pauses, Ctrl-C quits. Each press adds a notch of push, which stays. The
+left key moves the ball to the left of the picture.
 """
 
 import numpy as np
@@ -41,7 +42,7 @@ class TeleopKeyNode:
         self._task = declare_task(node, 'What is taught: axes and keys.')
         self._device = declare(
             node, 'device', KEYS_DEVICE, 'What the person holds in the hand.', choices=names(DEVICES))
-        keystroke = declare(
+        self._keystroke = declare(
             node, 'keystroke', KEYSTROKE, 'Change of M_yh at one press.', unit='N m', minimum=0.0, maximum=200.0)
         self._moment_limit = declare(
             node, 'moment_limit', HUMAN_MOMENT_LIMIT, 'Bound of |M_yh|, and about each axis of a task with several.',
@@ -60,9 +61,13 @@ class TeleopKeyNode:
             node, 'characters', 'auto', 'What the screen is drawn with; auto: as the locale has it.',
             choices=('auto', 'unicode', 'ascii'))
 
+        self._in_session = declare(
+            node, 'in_session', False, 'A lesson is about to be given: until the agent speaks, the screen says that it '
+            'starts, and after its end that it is over.')
+
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
-        device: Device = load(DEVICES, self._device)(self._task, keystroke, self._moment_limit)
+        device: Device = load(DEVICES, self._device)(self._task, self._keystroke, self._moment_limit)
         self._sources = Sources(device, self._timeout)
         self._none = np.zeros(len(self._task.axes))
         self._wrench = base_wrench(robot.base_frame)
@@ -85,8 +90,8 @@ class TeleopKeyNode:
             self.node.get_logger().info(f'no terminal ({reason}): {serves}')
             return None
         keys = self._task.keys if self._device == KEYS_DEVICE else {}
-        return Panel(self.node, terminal, self._rate, self._frame_rate, self._moment_limit, self._characters, keys,
-                     self._task)
+        return Panel(self.node, terminal, self._rate, self._frame_rate, self._keystroke, self._moment_limit,
+                     self._characters, keys, self._task, self._in_session)
 
     def run(self, stop: Stop) -> None:
         """Turn what the person does into M_h until told to stop."""
@@ -153,7 +158,8 @@ class TeleopKeyNode:
         self._publisher.publish(self._wrench)
 
     def _report(self) -> None:
-        if self._lesson.forget_if_over():
+        over = self._in_session and self._lesson.phase == 'done'
+        if not over and self._lesson.forget_if_over():
             self._sources.release()
             self._sources.is_active = True
         self._diagnostics.publish({}, moment=self._sources.moment.tolist())

@@ -43,14 +43,16 @@ class Panel:
     Args:
         rate: of the ticks, Hz.
         frame_rate: of the screen, Hz.
+        keystroke: change of M_yh at one press, N m.
         moment_limit: bound of |M_yh|, N m.
+        in_session: whether a lesson is about to be given.
         characters: ``auto``, ``unicode`` or ``ascii``.
         task: what is taught.
         keys: what the keys move; none when the person holds another device: then only q, p and the screen are here.
     """
 
-    def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, moment_limit: float,
-                 characters: str, keys: KeyMap, task: Task):
+    def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, keystroke: float,
+                 moment_limit: float, characters: str, keys: KeyMap, task: Task, in_session: bool):
         self.terminal = terminal
         known = {*keys, Key.SPACE} if keys else set()
         self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
@@ -63,13 +65,15 @@ class Panel:
         self._ticks = 0
         self.requests = Requests(node, self.tell)
         self._observer = Observer(node, task)
-        self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit)
+        self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit, keystroke=keystroke,
+                            in_session=in_session)
         self._restarts = 0
         self._paused_stamp_ns = 0
         self._frame_period = 1.0 / frame_rate
         self._next_frame = 0.0
         self._unicode = speaks_unicode(characters)
         self._message_until = 0.0
+        self._asked_until = 0.0
 
     def tell(self, text: str) -> None:
         """Show the person a notice for some seconds."""
@@ -99,13 +103,27 @@ class Panel:
         return {_KEYS[stroke] for stroke in self._held.down if stroke in _KEYS}
 
     def _obey(self, stroke: Stroke) -> None:
-        if stroke is Stroke.FINISH:
-            self.requests.finish()
+        if stroke is Stroke.START and self._scene.phase == 'practice':
+            self.requests.start()
+        elif stroke is Stroke.FINISH:
+            self._finish()
         elif stroke is Stroke.PAUSE:
             self._paused_stamp_ns = self._observer.stamp_ns
             self.requests.toggle_pause()
         elif stroke is Stroke.REDRAW:
             self.terminal.redraw()
+
+    def _finish(self) -> None:
+        """The first press asks, the second ends the teaching, and another takes that back."""
+        now = time.monotonic()
+        if self.requests.ending:
+            self.requests.keep_teaching()
+        elif now < self._asked_until:
+            self._asked_until = 0.0
+            self.requests.finish()
+        else:
+            self._asked_until = now + _MESSAGE_FOR
+            self.tell('End the teaching with this episode and test the robot? Press q again.')
 
     def draw(self, sources: Sources, lesson: Lesson) -> None:
         """Draw a frame if one is due."""
@@ -117,10 +135,13 @@ class Panel:
         if lesson.restarts != self._restarts:
             self._restarts = lesson.restarts
             scene.returns.clear()
+        scene.phase, scene.episode = lesson.phase, lesson.episode
         self._observer.update(scene)
         self._notice_resumption()
-        scene.phase, scene.episode = lesson.phase, lesson.episode
         scene.human = tuple(sources.moment.tolist())
+        if lesson.phase not in (None, 'teach', 'learn'):
+            self.requests.ending = False
+        scene.ending = self.requests.ending
         scene.hand = 'you' if sources.last_pressed in ('', SOURCE) else sources.last_pressed
         scene.paused = self.requests.paused
         if now > self._message_until:

@@ -14,17 +14,7 @@ from .canvas import to_lines
 STEEPER = 3
 """How many times steeper the tilt is drawn."""
 
-_MAX_COLUMNS, _MAX_ROWS = 120, 30
-
-
-def has_fallen(scene: Scene) -> bool:
-    """Whether the ball is no longer on the tray."""
-    if scene.ball_along is None or scene.ball_height is None:
-        return False
-    tray = scene.tray
-    across = scene.ball_on_tray[1] if scene.from_above and scene.ball_on_tray is not None else 0.0
-    return (scene.ball_height < 0.0 or abs(scene.ball_along) > tray.half_length + tray.ball.radius
-            or abs(across) > tray.half_width + tray.ball.radius)
+_MAX_COLUMNS, _MAX_ROWS = 160, 40
 
 
 def draw(scene: Scene, width: int, height: int, unicode: bool) -> list[str]:
@@ -56,6 +46,7 @@ def _dots(scene: Scene, pitch: float, width: int, height: int) -> np.ndarray:
     reach = np.abs(along)
     dots = (above <= 0.5) & (above > -1.5) & (reach <= half)
     dots |= (reach <= half) & (reach > half - 2.0) & (above > -1.0) & (above <= tray.wall * scale)
+    dots |= (above <= -2.5) & (above > -4.5) & (reach <= tray.goal_radius * scale)  # where the ball should be
     # The tray turns about its middle, where the ball should be.
     dots |= (up < -3.0) & (up >= -9.0) & (np.abs(left) <= -3.0 - up)
     if scene.ball_along is not None and scene.ball_height is not None:

@@ -4,16 +4,10 @@ import math
 
 from shared_control.wrench import AXIS_NAMES
 from shared_control_ros.watching.scene import Scene
+from shared_control_ros.watching.words import NO_LESSON, STARTING, Words, words_for
 
-from .picture import STEEPER, draw, has_fallen
+from .picture import STEEPER, draw
 
-_PHASES = {
-    'teach': 'Keep the ball in the middle: the robot learns from your keys.',
-    'learn': 'The robot thinks the episode over. Keys rest; just a moment.',
-    'test': 'The robot is on its own. Hands off: keys do nothing now.',
-    'wait': 'The next episode is about to start.',
-    'done': 'The lesson is over.',
-}
 _MIN_PICTURE = 5
 """Lines; less important lines go before the picture gets smaller, except in a tiny window."""
 _SPARKS = {True: '▁▂▃▄▅▆▇█', False: '_.-:=+*#'}
@@ -30,6 +24,7 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
     above = [(9, _title(scene, width)), (1, ''), (8, _headline(scene, width)), (0, '')]
     below = [
         (6, _tilt(scene, width)), (2, ''),
+        (7, _push(scene, width, unicode)),
         *_moments(scene, width, unicode),
         (2, ''),
         (3, _share(scene, width, unicode)),
@@ -68,13 +63,24 @@ def _headline(scene: Scene, width: int) -> str:
         word = 'WAITING FOR THE SIMULATOR'
         silent = scene.simulator_silent_for
         text = 'No /joint_states' + (f' for {silent:.0f} s.' if math.isfinite(silent) else ' yet.')
-    elif scene.phase is None:
-        word, text = 'FREE', 'No robot is being taught. Your keys tilt the tray: try them.'
     else:
-        word, text = scene.phase.upper(), _PHASES.get(scene.phase, '')
-        if scene.phase == 'teach' and scene.from_above:
-            text = f'{scene.task.instruction.rstrip(".")}: the robot learns from your keys.'
+        title, text = _lesson(scene)
+        word = title.upper()
     return _fitting(width, f' [ {word} ]  {text}', f' [ {word} ]  {text.partition(":")[0].partition(". ")[0]}')
+
+
+def _lesson(scene: Scene) -> Words:
+    """Title and words for the phase; between episodes how the last one ended, and when the next begins."""
+    if scene.phase is None:
+        return STARTING if scene.in_session else NO_LESSON
+    title, text = words_for(scene.task).get(scene.phase, Words(scene.phase, ''))
+    if scene.phase in ('learn', 'wait', 'done'):
+        outcome = '' if scene.outcome is None else scene.outcome.words
+        soon = '' if scene.next_in is None else f'Next in {math.ceil(scene.next_in)}.'
+        text = ' '.join(filter(None, (outcome, soon))) or text
+    elif scene.ending:
+        text = 'The teaching ends with this episode. q: go on teaching.'
+    return Words(title, text)
 
 
 def _message(scene: Scene) -> str:
@@ -91,7 +97,7 @@ def _tilt(scene: Scene, width: int) -> str:
     side = '' if abs(degrees) < 0.05 else 'left' if degrees > 0 else 'right'
     tilt = f' tilt {abs(degrees):.1f} deg'
     long = f'{tilt}{side and f", {side} side down"} (drawn {STEEPER} x)'
-    if has_fallen(scene):
+    if scene.has_fallen:
         where = 'THE BALL HAS FALLEN'
     elif scene.ball_along is None:
         where = ''
@@ -104,7 +110,7 @@ def _tilt(scene: Scene, width: int) -> str:
 
 def _off_the_goal(scene: Scene, width: int) -> str:
     tilt = '' if scene.tilt is None else f' tilt {math.degrees(scene.tilt):.1f} deg'
-    if has_fallen(scene):
+    if scene.has_fallen:
         return f'{tilt}   THE BALL HAS FALLEN'
     if scene.ball_on_tray is None:
         return tilt
@@ -113,10 +119,27 @@ def _off_the_goal(scene: Scene, width: int) -> str:
     return _fitting(width, f'{tilt}   {where}   (seen from above)', f'{tilt}   {where}')
 
 
+def _push(scene: Scene, width: int, unicode: bool) -> str:
+    """The notches of the person's push, and that it stays."""
+    if scene.phase not in (None, 'practice', 'teach') or scene.paused:
+        return ' your keys do not count now'
+    steps = max(round(scene.moment_limit / scene.keystroke), 1) if scene.keystroke > 0 else 1
+    if steps > 8 or scene.from_above:
+        pushed = any(scene.human)
+        return _fitting(width, f' push      {"it stays until you press space" if pushed else "none"}', '')
+    notches = round(scene.human[0] / scene.keystroke) if scene.keystroke > 0 else 0
+    full, empty = ('■', '·') if unicode else ('#', '.')
+    left, right = max(notches, 0), max(-notches, 0)
+    drawn = f'{empty * (steps - left)}{full * left}|{full * right}{empty * (steps - right)}'
+    side = 'left' if notches > 0 else 'right'
+    words = f'{abs(notches)} to the {side}: it stays until you press space' if notches else 'none'
+    return _fitting(width, f' push     {drawn} {words}', f' push     {drawn}')
+
+
 def _moments(scene: Scene, width: int, unicode: bool) -> list[tuple[int, str]]:
     """Lines for the moments of human, robot and both, with their importance."""
-    sources = ((7, scene.hand, 'M_yh', scene.human), (4, 'robot', 'M_yai', scene.agent),
-               (5, 'sum', 'M_y', scene.applied))
+    human, agent, applied = (scene.human, None, None) if scene.parts is None else scene.parts
+    sources = ((7, scene.hand, 'M_yh', human), (4, 'robot', 'M_yai', agent), (5, 'together', 'M_y', applied))
     if not scene.from_above:
         return [(importance, _bar(who, symbol, None if moment is None else moment[0], scene, width, unicode))
                 for importance, who, symbol, moment in sources]
@@ -159,7 +182,7 @@ def _returns(scene: Scene, width: int, unicode: bool) -> str:
         low, high = min(shown), max(shown)
         span = (high - low) or 1.0
         levels = ''.join(sparks[round((value - low) / span * (len(sparks) - 1))] for value in shown)
-        text = f' {"returns":14} {levels}  last {shown[-1]:.0f}, best {max(scene.returns):.0f}'
+        text = f' {"score":14} {levels}  last {shown[-1]:.0f}, best {max(scene.returns):.0f}'
     if scene.success is not None:
         text += f'   last test {100 * scene.success:.0f} %'
     return text
@@ -167,14 +190,15 @@ def _returns(scene: Scene, width: int, unicode: bool) -> str:
 
 def _help(scene: Scene, width: int, unicode: bool) -> str:
     left, right = _ARROWS[unicode]
-    if scene.from_above:
-        arrows = '← ↑ ↓ →' if unicode else 'arrows'
-        return _fitting(
-            width, f' {arrows} or a w s d: tip the tray   space: let go   q: it has learned   p: pause   ^C: quit',
-            f' {arrows} tip   space let go   q learned   p pause   ^C quit', f' {arrows} space q p ^C')
+    keys = ('← ↑ ↓ → or a w s d' if unicode else 'arrows or a w s d') if scene.from_above else f'{left} {right} or a d'
+    short = keys.partition(' or ')[0]
+    end = 'Enter: start teaching' if scene.phase == 'practice' else 'q: done teaching'
+    word = end.replace(': ', ' ')
     return _fitting(
         width,
-        f' {left} a: left   d {right}: right   space: let go   q: it has learned   p: pause   Ctrl-C: quit',
-        f' {left} a left   d {right} right   space let go   q it has learned   p pause   ^C quit',
-        f' {left} a  d {right}  space let go  q learned  p pause  ^C quit',
-        f' {left} {right} space q p ^C')
+        f' {keys}: a press adds a notch of push, which stays   space: no push   {end}   p: pause   Ctrl-C: stop',
+        f' {short}: push, a notch a press   space: no push   {end}   p: pause   ^C: stop',
+        f' {short} push  space no push  {word}  p pause  ^C stop',
+        f' {short} push  space no push  {word}  p  ^C',
+        f' {short}  space no push  {word.partition(" ")[0]}  p  ^C',
+        f' {short} space q p ^C')

@@ -4,15 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shared_control.tasks.balance import Balance
 from shared_control.tasks.detour import Detour
 from shared_control.tasks.plate import Plate
-from shared_control_ros.watching.scene import Scene
+from shared_control_ros.watching.outcome import outcome_of
+from shared_control_ros.watching.scene import Parts, Scene
 from teleop_key_node.picture import draw
 from teleop_key_node.screen import render
 
 SCENE = Scene(
-    pitch=0.04, ball_along=0.10, ball_height=0.021, human=(5.0,), agent=(-2.0,), applied=(3.0,), human_share=0.25,
+    pitch=0.04, ball_on_tray=np.array([0.10, 0.0, 0.021]), human=(5.0,), parts=Parts((5.0,), (-2.0,), (3.0,)),
+    human_share=0.25,
     phase='teach', episode=3, time_left=9.4, returns=[-5000.0, -200.0, 40.0], success=0.95)
+
+
+FELL = outcome_of(Balance(), 'teach', 7.0, (0.1, 0.0, 0.021))
 
 
 def line_with(lines: list[str], text: str) -> str:
@@ -27,9 +33,9 @@ def columns_of_dots(scene: Scene) -> list[list[int]]:
 
 
 def test_a_ball_at_plus_x_is_left_in_the_picture():
-    without = columns_of_dots(replace(SCENE, pitch=0.0, ball_along=None))
+    without = columns_of_dots(replace(SCENE, pitch=0.0, ball_on_tray=None))
     for along, is_left in ((0.15, True), (-0.15, False)):
-        ball = columns_of_dots(replace(SCENE, pitch=0.0, ball_along=along))
+        ball = columns_of_dots(replace(SCENE, pitch=0.0, ball_on_tray=np.array([along, 0.0, 0.021])))
         added = [column for row, empty in zip(ball, without, strict=True) for column in set(row) - set(empty)]
         assert added
         assert all((column < 40) == is_left for column in added)
@@ -38,7 +44,7 @@ def test_a_ball_at_plus_x_is_left_in_the_picture():
 
 def test_a_positive_pitch_tips_the_left_side_down():
     for pitch, lower in ((0.04, 'left'), (-0.04, 'right')):
-        rows = columns_of_dots(replace(SCENE, pitch=pitch, ball_along=None))
+        rows = columns_of_dots(replace(SCENE, pitch=pitch, ball_on_tray=None))
         height = {side: max(row for row, columns in enumerate(rows) if columns and end(columns))
                   for side, end in (('left', lambda c: c[0] < 8), ('right', lambda c: c[-1] > 71))}
         assert max(height, key=lambda side: height[side]) == lower
@@ -57,31 +63,41 @@ def test_bars_point_to_where_the_ball_is_pushed():
     assert agent[axis - 1] == ' '
     assert '-2.0 N m' in agent
     assert human.count('█') > total.count('█') > agent.count('█')
-    assert '-- N m' in line_with(render(replace(SCENE, agent=None), 80, 24), 'M_yai')
+    assert '-- N m' in line_with(render(replace(SCENE, parts=None), 80, 24), 'M_yai')
 
 
 def test_bars_keep_to_their_place_beyond_the_scale():
-    lines = render(replace(SCENE, applied=(-105.0,)), 80, 24)
+    lines = render(replace(SCENE, parts=Parts((5.0,), (-110.0,), (-105.0,))), 80, 24)
     assert '-105.0 N m' in line_with(lines, 'M_y ')
     assert len(line_with(lines, 'M_y ')) == 80
 
 
 @pytest.mark.parametrize(('changes', 'said'), [
     ({}, '[ TEACH ]'),
-    ({'phase': 'learn'}, '[ LEARN ]'),
-    ({'phase': 'test'}, 'Hands off'),
-    ({'phase': 'wait'}, '[ WAIT ]'),
-    ({'phase': 'done'}, '[ DONE ]'),
+    ({}, 'Push when it errs; no push when it does well.'),
+    ({}, '·■|·· 1 to the left: it stays until you press space'),
+    ({'human': (-10.0,)}, '··|■■ 2 to the right'),
+    ({'human': (0.0,)}, '··|·· none'),
+    ({'phase': 'learn'}, '[ THE ROBOT LEARNS ]  Your keys do not count now.'),
+    ({'phase': 'learn'}, ' your keys do not count now '),
+    ({'phase': 'learn', 'outcome': FELL, 'next_in': 1.2}, 'The ball fell after 8 s. Next in 2.'),
+    ({'phase': 'test'}, '[ THE ROBOT ALONE ]  Hands off'),
+    ({'phase': 'practice'}, '[ PRACTICE ]  You alone move the tray'),
+    ({'phase': 'practice'}, 'Enter start teaching'),
+    ({'ending': True}, 'The teaching ends with this episode. q: go on teaching.'),
+    ({'phase': 'wait'}, '[ GET READY ]'),
+    ({'phase': 'done'}, '[ FINISHED ]'),
     ({'phase': 'dance'}, '[ DANCE ]'),
-    ({'phase': None}, '[ FREE ]'),
+    ({'phase': None}, '[ NO LESSON ]'),
+    ({'phase': None, 'in_session': True}, '[ STARTING ]'),
     ({'paused': True, 'simulator_silent_for': 9.0}, 'Press p to go on'),
     ({'simulator_silent_for': 3.2}, '[ WAITING FOR THE SIMULATOR ]  No /joint_states for 3 s.'),
     ({'simulator_silent_for': float('inf'), 'phase': None}, 'No /joint_states yet.'),
-    ({'simulator_silent_for': 3.2, 'phase': 'learn'}, '[ LEARN ]'),
+    ({'simulator_silent_for': 3.2, 'phase': 'learn'}, '[ THE ROBOT LEARNS ]'),
     ({'waiting': 'for a tick since 14:00 (7 s)\nsimulator: no torque'}, '[ WAITING ]  for a tick since 14:00 (7 s)'),
     ({'waiting': 'for a tick since 14:00 (7 s)\nsimulator: no torque'}, 'simulator: no torque'),
-    ({'ball_height': -0.1}, 'THE BALL HAS FALLEN'),
-    ({'ball_along': 0.3}, 'THE BALL HAS FALLEN'),
+    ({'ball_on_tray': np.array([0.1, 0.0, -0.1])}, 'THE BALL HAS FALLEN'),
+    ({'ball_on_tray': np.array([0.3, 0.0, 0.021])}, 'THE BALL HAS FALLEN'),
     ({'hand': 'tutor'}, 'human share'),
     ({}, 'your share     ██████████░'),
     ({}, '25 %'),
@@ -96,7 +112,8 @@ def test_what_is_said(changes, said):
 @pytest.mark.parametrize('unicode', [True, False])
 @pytest.mark.parametrize(('width', 'height'), [(80, 24), (60, 16), (40, 10), (20, 5), (1, 1), (200, 60), (79, 200)])
 def test_any_window_is_filled_and_not_overrun(width, height, unicode):
-    for scene in (SCENE, Scene(), replace(SCENE, pitch=-0.5, ball_height=-3.0, message='x' * 300)):
+    fallen = replace(SCENE, pitch=-0.5, ball_on_tray=np.array([0.1, 0.0, -3.0]), message='x' * 300)
+    for scene in (SCENE, Scene(), fallen):
         lines = render(scene, width, height, unicode)
         assert len(lines) <= height
         assert all(len(line) == width for line in lines)
@@ -111,8 +128,8 @@ def test_a_small_window_keeps_what_matters():
 
 
 FROM_ABOVE = replace(
-    SCENE, task=Plate(), tilt=0.03, ball_on_tray=np.array([0.10, -0.05, 0.021]), human=(0.0, 0.0), agent=(-3.0, 8.0),
-    applied=(2.0, 3.0))
+    SCENE, task=Plate(), tilt=0.03, ball_on_tray=np.array([0.10, -0.05, 0.021]), human=(0.0, 0.0),
+    parts=Parts((5.0, -5.0), (-3.0, 8.0), (2.0, 3.0)))
 
 
 def dots_of(scene: Scene) -> set[tuple[int, int]]:
@@ -145,11 +162,11 @@ def test_an_arrow_points_to_where_the_moment_rolls_the_ball(moment, is_left, is_
 
 
 @pytest.mark.parametrize(('changes', 'said'), [
-    ({}, 'M_x  -3.0   M_y  +8.0 N m'), ({'agent': None}, 'M_x    --   M_y    -- N m'),
+    ({}, 'M_x  -3.0   M_y  +8.0 N m'), ({'parts': None}, 'M_x    --   M_y    -- N m'),
     ({}, 'ball 11.2 cm from the goal'),
-    ({'ball_on_tray': np.array([0.01, 0.0, 0.021]), 'ball_along': 0.01}, 'ball at the goal'),
-    ({'ball_on_tray': np.array([0.0, 0.2, 0.021]), 'ball_along': 0.0}, 'THE BALL HAS FALLEN'),
-    ({'task': Detour()}, 'Bring the ball round the bar to the goal'), ({}, 'tilt 1.7 deg'), ({}, 'a w s d'),
+    ({'ball_on_tray': np.array([0.01, 0.0, 0.021])}, 'ball at the goal'),
+    ({'ball_on_tray': np.array([0.0, 0.2, 0.021])}, 'THE BALL HAS FALLEN'),
+    ({'task': Detour()}, 'Bring the ball round the bar to the goal'), ({}, 'tilt 1.7 deg'), ({}, '← ↑ ↓ →'),
     ({}, 'Teach the robot: plate')])
 def test_what_is_said_with_two_axes(changes, said):
     assert said in '\n'.join(render(replace(FROM_ABOVE, **changes), 100, 24))

@@ -13,6 +13,7 @@ from shared_control.keys import Key, KeyPresses
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from std_srvs.srv import SetBool, Trigger
+from teleop_key_node.keyboard import HeldKeys
 
 LEFT, RIGHT = b'\x1b[D', b'\x1b[C'
 ENTER, LEAVE = '\x1b[?1049h', '\x1b[?1049l'
@@ -115,6 +116,9 @@ def test_the_screen_shows_the_lesson(graph, start_in_terminal):
 def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
     terminal = start_in_terminal()
     terminal.type(b'q')
+    terminal.expect('Press q again')
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)  # sooner it would be the terminal's repetition
+    terminal.type(b'q')
     terminal.expect('Nobody serves /learner/finish')
     asked = []
 
@@ -138,6 +142,11 @@ def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
             terminal.type(key)
             for _ in range(30):
                 executor.spin_once(timeout_sec=0.01)
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
+    before = len(terminal.shown)
+    terminal.type(b'q')
+    terminal.expect('Press q again', after=before)
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
     ask(b'q', 1)
     terminal.expect('One more test.')
     ask(b'p', 2)

@@ -38,8 +38,10 @@ class SessionFolder(RunFolder):
         """What happened, at a glance."""
         self.report = path / 'report.html'
         """The report, self-contained."""
+        self.ending = path / 'ending.json'
+        """What is being done after the teaching; there until the session is over, for its page."""
         own = (self.bag, self.learner, self.logs, self.given_parameters, self.parameters, self.settings, self.test,
-               self.summary, self.picture, self.report)
+               self.summary, self.picture, self.report, self.ending)
         super().__init__(path, 'session', [child.name for child in own], [self.bag.name, self.settings.name])
 
     @classmethod

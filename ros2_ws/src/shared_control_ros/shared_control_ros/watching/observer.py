@@ -17,8 +17,11 @@ from ..fast_loop import Polled
 from ..joints import joint_positions
 from ..stamps import to_ns
 from ..wrenches import moment_of
-from .scene import Moments, Scene
+from .outcome import outcome_of
+from .scene import Moments, Parts, Scene
 
+EPISODES = ('teach', 'test')
+"""Phases that are episodes."""
 SILENT_AFTER = 0.5
 """A topic is silent when it brings nothing new for this long, s of the wall clock."""
 
@@ -34,14 +37,16 @@ class Observer:
         self._model = RobotModel()
         self._joint_states = Polled(node, contract.JOINT_STATES_THROTTLE, qos_profile=_NEWEST)
         self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
-        self._agent = Moment(node, contract.AGENT_WRENCH, task)
-        self._applied = Moment(node, contract.APPLIED_WRENCH, task)
+        self._parts = AppliedParts(node, task)
         latest = contract.qos_latched(1)
         self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
         self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
         self._success = Polled(node, contract.SUCCESS, qos_profile=latest)
         self._waiting = Polled(node, contract.WAITING, qos_profile=latest)
         self._returns = Polled(node, contract.EPISODE_RETURN, qos_profile=contract.qos_latched())
+        self._task = task
+        self._episode_phase: str | None = None
+        self._begun: tuple[str | None, int | None] = None, None
         self._stamp_ns = -1
         self._moved_at = -math.inf
         self._tray: tuple[np.ndarray, np.ndarray] | None = None
@@ -52,7 +57,7 @@ class Observer:
         return self._stamp_ns
 
     def update(self, scene: Scene) -> None:
-        """Bring the scene up to date."""
+        """Bring the scene up to date; its phase and episode must be so already."""
         now = time.monotonic()
         joints = self._joint_states.take()
         if joints is not None:
@@ -62,9 +67,8 @@ class Observer:
             self._read_ball(ball, scene)
         silent = now - self._moved_at
         scene.simulator_silent_for = silent if silent > SILENT_AFTER else None
-        scene.agent = self._agent.update(now)
-        scene.applied = self._applied.update(now)
-        scene.time_left = self._latest(self._time_left, scene.time_left)
+        scene.parts = self._parts.update(now)
+        self._read_time_left(scene)
         scene.human_share = self._latest(self._share, scene.human_share)
         scene.success = self._latest(self._success, scene.success)
         if (waiting := self._waiting.take()) is not None:
@@ -72,6 +76,21 @@ class Observer:
         while (message := self._returns.take()) is not None:
             if math.isfinite(message.data):
                 scene.returns.append(message.data)
+                scene.outcome = outcome_of(
+                    self._task, self._episode_phase, scene.time_left,
+                    None if scene.ball_on_tray is None else scene.ball_on_tray.tolist())
+
+    def _read_time_left(self, scene: Scene) -> None:
+        """The topic means the episode while there is one, and the break otherwise."""
+        if (scene.phase, scene.episode) != self._begun:
+            self._begun = scene.phase, scene.episode
+            scene.next_in = None
+            if scene.phase in EPISODES:
+                self._episode_phase, scene.outcome, scene.time_left = scene.phase, None, None
+        if scene.phase in EPISODES:
+            scene.time_left = self._latest(self._time_left, scene.time_left)
+        else:
+            scene.next_in = self._latest(self._time_left, scene.next_in)
 
     def _read_joints(self, joints: JointState, scene: Scene, now: float) -> None:
         try:
@@ -97,7 +116,6 @@ class Observer:
             return
         origin, rotation = self._tray
         scene.ball, scene.ball_on_tray = in_base, rotation.T @ (in_base - origin)
-        scene.ball_along, _, scene.ball_height = scene.ball_on_tray.tolist()
 
     @staticmethod
     def _latest(topic: Polled, before: float | None) -> float | None:
@@ -127,3 +145,38 @@ class Moment:
             except ValueError:
                 self._moment = None
         return self._moment if now - self._heard_at <= SILENT_AFTER else None
+
+
+class AppliedParts:
+    """What the controller used of both moments at one of its ticks, and their sum; None when it is silent.
+
+    The three topics are heard one after the other: only what bears the same stamp is shown together.
+    """
+
+    def __init__(self, node: Node, task: Task = BALANCE):
+        several = QoSProfile(depth=20, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._topics = [Polled(node, topic, qos_profile=several) for topic in (
+            contract.HUMAN_APPLIED, contract.AGENT_APPLIED, contract.APPLIED_WRENCH)]
+        self._axes = task.axes
+        self._heard: list[dict[int, Moments]] = [{} for _ in self._topics]
+        self._parts: Parts | None = None
+        self._heard_at = -math.inf
+
+    def update(self, now: float) -> Parts | None:
+        """At ``now`` of the monotonic clock."""
+        for topic, heard in zip(self._topics, self._heard, strict=True):
+            while (wrench := topic.take()) is not None:
+                try:
+                    heard[to_ns(wrench.header.stamp)] = tuple(moment_of(wrench, self._axes).tolist())
+                except ValueError:
+                    continue
+        common = self._heard[0].keys() & self._heard[1].keys() & self._heard[2].keys()
+        if common:
+            newest = max(common)
+            self._parts = Parts(*(heard[newest] for heard in self._heard))
+            self._heard_at = now
+            self._heard = [{stamp: heard[stamp] for stamp in heard if stamp > newest} for heard in self._heard]
+        for heard in self._heard:
+            if len(heard) > 100:  # of a clock that began anew, or one topic alone
+                heard.clear()
+        return self._parts if now - self._heard_at <= SILENT_AFTER else None

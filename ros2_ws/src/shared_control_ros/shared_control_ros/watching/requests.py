@@ -1,4 +1,4 @@
-"""What a person asks of the other nodes: the lesson is over, pause, go on."""
+"""What a person asks of the other nodes: begin to teach, end it, pause, go on."""
 
 import time
 from collections.abc import Callable
@@ -12,6 +12,7 @@ from .. import contract
 
 ANSWER_WITHIN = 3.0
 """s"""
+HINT = 'is the learner (ppo_agent_node) running?'
 
 
 class Requests:
@@ -24,10 +25,14 @@ class Requests:
     def __init__(self, node: Node, tell: Callable[[str], None]):
         self._tell = tell
         self._finish = node.create_client(Trigger, contract.FINISH_SERVICE)
+        self._keep_teaching = node.create_client(Trigger, contract.KEEP_TEACHING_SERVICE)
+        self._start = node.create_client(Trigger, contract.START_SERVICE)
         self._pause = node.create_client(SetBool, contract.PAUSE_SERVICE)
         self._pending: dict[Future, tuple[Client, float]] = {}
         self.paused = False
         """Whether the simulator has been paused from here."""
+        self.ending = False
+        """Whether the teaching ends with this episode, because it was asked for here."""
 
     @property
     def is_pending(self) -> bool:
@@ -35,10 +40,22 @@ class Requests:
         return bool(self._pending)
 
     def finish(self) -> None:
-        """It has learned it: end the lesson."""
+        """Enough is taught: end the lesson with this episode."""
         def answered(response: Trigger.Response) -> None:
             self._tell(response.message or ('The lesson ends.' if response.success else 'The learner refused to end.'))
-        self._call(self._finish, Trigger.Request(), answered, 'is the learner running?')
+            self.ending = response.success
+        self._call(self._finish, Trigger.Request(), answered, HINT)
+
+    def keep_teaching(self) -> None:
+        """Take :meth:`finish` back."""
+        def answered(response: Trigger.Response) -> None:
+            self._tell(response.message)
+            self.ending = self.ending and not response.success
+        self._call(self._keep_teaching, Trigger.Request(), answered, HINT)
+
+    def start(self) -> None:
+        """Practice is over: teach."""
+        self._call(self._start, Trigger.Request(), lambda response: self._tell(response.message), HINT)
 
     def toggle_pause(self) -> None:
         """Pause the simulator, or go on."""

@@ -1,13 +1,26 @@
 """What the teaching screen shows."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
+from shared_control.keys import KEYSTROKE
 from shared_control.scene import Scene as TaskScene
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 
+from .outcome import Outcome, has_left
+
 Moments = tuple[float, ...]
+
+
+class Parts(NamedTuple):
+    """The moments of one tick of the controller along the task's axes, (k,) each, N m: they add up."""
+
+    human: Moments
+    agent: Moments
+    applied: Moments
+    """Their sum, within the task's limit."""
 
 
 @dataclass
@@ -24,33 +37,37 @@ class Scene:
     """In the base frame, (3,), m."""
     ball_on_tray: np.ndarray | None = None
     """In the tray's frame, (3,), m."""
-    ball_along: float | None = None
-    """The ball's offset from the middle of the tray along its x axis, m; positive: left in the picture."""
-    ball_height: float | None = None
-    """Height of the ball's centre above the tray's frame, m."""
     tilt: float | None = None
     """How far the tray is from level, rad."""
     human: Moments = (0.0,)
     """Along the task's axes, (k,), N m"""
-    agent: Moments | None = None
-    """Likewise."""
-    applied: Moments | None = None
-    """The sum as the controller applies it, likewise."""
+    parts: Parts | None = None
+    """What the controller used of both at its newest tick, and the sum."""
     moment_limit: float = 10.0
     """Bound of the human's moment about each axis, N m; the bars reach to twice that."""
+    keystroke: float = KEYSTROKE
+    """What one press adds to it, N m."""
     hand: str = 'you'
     """Whose keys count: ``you``, or another source's name."""
     human_share: float | None = None
     """0..1"""
     phase: str | None = None
-    """``teach``, ``learn``, ``test``, ``wait``, ``done``; None: nobody teaches a robot."""
+    """``practice``, ``teach``, ``learn``, ``test``, ``wait``, ``done``; None: nobody has said it (yet)."""
     episode: int | None = None
     time_left: float | None = None
     """What is left of the episode, s."""
+    next_in: float | None = None
+    """Until the next episode begins, s."""
+    outcome: Outcome | None = None
+    """How the last episode ended; None once the next one has begun."""
     returns: list[float] = field(default_factory=list)
     """Returns of the episodes so far."""
     success: float | None = None
     """Share of the last test that succeeded, 0..1."""
+    in_session: bool = False
+    """Whether a lesson is about to be given: nothing known of it means that it starts."""
+    ending: bool = False
+    """Whether the teaching ends with this episode."""
     paused: bool = False
     simulator_silent_for: float | None = None
     """How long the simulator has said nothing, s; None: it runs."""
@@ -63,6 +80,21 @@ class Scene:
     def tray(self) -> TaskScene:
         """The geometry of the task."""
         return self.task.scene
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether the ball is no longer on the tray."""
+        return self.ball_on_tray is not None and has_left(self.task, self.ball_on_tray.tolist())
+
+    @property
+    def ball_along(self) -> float | None:
+        """The ball's offset from the middle of the tray along its x axis, m; positive: left in the picture."""
+        return None if self.ball_on_tray is None else float(self.ball_on_tray[0])
+
+    @property
+    def ball_height(self) -> float | None:
+        """Height of the ball's centre above the tray's frame, m."""
+        return None if self.ball_on_tray is None else float(self.ball_on_tray[2])
 
     @property
     def from_above(self) -> bool:

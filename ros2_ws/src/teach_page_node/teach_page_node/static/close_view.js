@@ -4,11 +4,13 @@
 import { part, setText } from "./parts.js";
 
 const EXAGGERATION = 3;
+const STEEPEST = 20; // degrees that are drawn: the raised end stays in the picture
+const LOWEST = 45; // where a ball that falls is lost to sight
 const MM = 1000; // 1 mm is a unit of the drawing
 const ARROWS = 200; // units of the drawing for the task's largest moment
 const HEAD = 16;
 // From the front the arrows stand below each other.
-const ROWS = window.teachPage.axes.length > 1 ? { human: 0, agent: 0, applied: 0 } : { human: 55, agent: 72, applied: 91 };
+const ROWS = window.teachPage.axes.length > 1 ? { human: 0, agent: 0, applied: 0 } : { human: 85, agent: 102, applied: 120 };
 
 export function showCloseView(picture) {
   const isFromAbove = window.teachPage.axes.length > 1;
@@ -42,10 +44,11 @@ function showFromAbove({ on_tray, tilt }) {
 
 function showFromFront({ on_tray, pitch }) {
   const degrees = ((pitch ?? 0) * 180) / Math.PI;
-  part("tilt").setAttribute("transform", `rotate(${(-EXAGGERATION * degrees).toFixed(2)})`);
+  const drawn = Math.max(-STEEPEST, Math.min(STEEPEST, EXAGGERATION * degrees));
+  part("tilt").setAttribute("transform", `rotate(${(-drawn).toFixed(2)})`);
   const side = degrees > 0 ? "to the left" : "to the right";
   setText("tilt-text", pitch === null ? "" : Math.abs(degrees) < 0.05 ? "level" :
-    `tilt ${Math.abs(degrees).toFixed(1)}° ${side} (drawn ${EXAGGERATION} ×)`);
+    `tilt ${Math.abs(degrees).toFixed(1)}° ${side}${Math.abs(drawn) < STEEPEST ? ` (drawn ${EXAGGERATION} ×)` : ""}`);
 
   const { half_length, surface } = window.teachPage;
   const isNear = on_tray !== null && Math.abs(on_tray[0]) < half_length + 0.09;
@@ -53,7 +56,7 @@ function showFromFront({ on_tray, pitch }) {
   if (isNear) {
     const x = (-on_tray[0] * MM).toFixed(1);
     part("close-ball").setAttribute("cx", x);
-    part("close-ball").setAttribute("cy", (-(on_tray[2] - surface) * MM).toFixed(1));
+    part("close-ball").setAttribute("cy", Math.min(-(on_tray[2] - surface) * MM, LOWEST).toFixed(1));
     part("close-shadow").setAttribute("cx", x);
     if (Math.abs(on_tray[0]) > half_length) part("close-shadow").style.display = "none";
   }

@@ -49,6 +49,7 @@ export function listenToKeys(send) {
   window.addEventListener("keydown", (event) => {
     const i = keyOf(event);
     if (i === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (document.body.classList.contains("over")) return; // links and buttons have them again
     event.preventDefault(); // no scrolling, and no button pressed by the space bar
     setFocus(true); // a key that arrives here proves it
     if (event.repeat) return;
@@ -77,6 +78,14 @@ export function listenToKeys(send) {
         if (held[i].delete(event.pointerId)) tell();
       });
     }
+    // Enter on the key, or a screen reader: a click without a pointer.
+    key(i).addEventListener("click", (event) => {
+      if (event.detail !== 0) return;
+      held[i].add("click");
+      tell();
+      held[i].delete("click");
+      tell();
+    });
     key(i).addEventListener("contextmenu", (event) => event.preventDefault());
   });
 

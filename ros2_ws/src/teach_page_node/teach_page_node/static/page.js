@@ -6,8 +6,10 @@ import { listenToPlayer, showPlayer } from "./player.js";
 import { showHistory, showMoments } from "./charts.js";
 import { prepareScene, showScene } from "./scene.js";
 import { showCloseView } from "./close_view.js";
+import { listenToButtons } from "./buttons.js";
+import { listenToEnd, showEnd } from "./end.js";
 import { showConnection, showPicture, showRole } from "./panel.js";
-import { isMounted, part } from "./parts.js";
+import { isMounted } from "./parts.js";
 
 while (!isMounted()) await new Promise((resolve) => setTimeout(resolve, 50)); // NiceGUI builds the page after this is loaded
 
@@ -16,7 +18,7 @@ const isReplay = document.body.classList.contains("replay");
 prepareScene();
 
 const PARTS = [(picture) => showPicture(picture, isReplay), showScene, showCloseView, showMoments,
-  ...(isReplay ? [(picture) => showPlayer(picture.replay)] : [])];
+  isReplay ? (picture) => showPlayer(picture.replay) : showEnd];
 const failed = new Set();
 
 // A part that cannot be shown must not take the others, or the keys, with it.
@@ -53,10 +55,6 @@ const live = connect({
 if (isReplay) {
   listenToPlayer(live.send);
 } else {
-  for (const name of ["start", "pause", "repeat", "finish", "take_seat"]) {
-    part(name.replace("_", "-")).addEventListener("click", () => live.send({ do: name }));
-  }
-  part("stop").addEventListener("click", () => {
-    if (confirm("Stop the session? Everything so far is kept.")) live.send({ do: "stop" });
-  });
+  listenToButtons(live.send);
+  listenToEnd(live.send);
 }

@@ -1,0 +1,34 @@
+"""What a person is told of each phase: the same words on the page, in the terminal and in a replay. Needs no ROS."""
+
+from typing import NamedTuple
+
+from shared_control.tasks.task import Task
+
+
+class Words(NamedTuple):
+    """Title and explanation of one phase."""
+
+    title: str
+    doing: str
+    """What happens, and whether keys count."""
+
+
+STARTING = Words('Starting', 'Robot and learner are getting ready.')
+"""A session has begun, and the agent has said nothing yet."""
+NO_LESSON = Words('No lesson', 'Nobody learns at the moment; your keys move the tray.')
+PHASES = {
+    'wait': Words('Get ready', 'An episode is about to begin. Your keys do not count yet.'),
+    'practice': Words('Practice', 'You alone move the tray: the robot is off. Get the feel of it.'),
+    'teach': Words('Teach', 'The robot tries. Push when it errs; no push when it does well.'),
+    'learn': Words('The robot learns', 'Your keys do not count now.'),
+    'test': Words('The robot alone', 'Hands off: your keys do not count now.'),
+    'done': Words('Finished', 'The teaching is over.'),
+}
+
+
+def words_for(task: Task) -> dict[str, Words]:
+    """The words of all phases, by name."""
+    if len(task.axes) == 1:
+        return PHASES
+    teach = PHASES['teach']
+    return {**PHASES, 'teach': Words(teach.title, f'{task.instruction} Push when the robot errs.')}

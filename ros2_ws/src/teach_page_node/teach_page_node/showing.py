@@ -1,0 +1,25 @@
+"""What of a lesson or a recording people are shown."""
+
+from dataclasses import dataclass
+
+FEEDBACK = ('none', 'ball', 'full')
+"""``none``: tray, ball, and one's own push. ``ball``: and how each episode ended. ``full``: and the robot's push, human
+share, score and tests."""
+
+
+@dataclass(frozen=True)
+class Showing:
+    """What a page shows, besides what moves."""
+
+    feedback: str = 'full'
+    """One of ``FEEDBACK``."""
+    in_session: bool = False
+    """A lesson is about to be given: nothing known of it means that it starts."""
+    shows_result: bool = True
+    """Whether test, picture and report are shown in the end."""
+    title: str = ''
+    """Which recording this is."""
+    marks: tuple[tuple[float, str], ...] = ()
+    """Where its episodes begin, s, and their names."""
+    tested: str = ''
+    """What the robot alone came to in the test of the recorded session."""
