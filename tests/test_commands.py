@@ -3,7 +3,7 @@
 import re
 import subprocess
 import sys
-from importlib.metadata import entry_points
+from importlib.metadata import entry_points, version
 from pathlib import Path
 
 import pytest
@@ -64,3 +64,11 @@ def test_who_does_not_learn_loads_no_torch():
     loaded = subprocess.run([sys.executable, '-c', f'import {", ".join(modules)}, sys; print(*sys.modules)'],
                             capture_output=True, text=True, check=True).stdout.split()
     assert {*modules} <= {*loaded} and 'torch' not in loaded
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    ([], 'commands:'), (['--version'], f'shared-control {version("shared-control")}')])
+def test_the_command_alone_helps_and_says_its_version(arguments, said):
+    done = subprocess.run([Path(sys.executable).parent / 'shared-control', *arguments], capture_output=True, text=True,
+                          timeout=60, check=False)
+    assert done.returncode == 0 and said in done.stdout

@@ -7,7 +7,7 @@ code.
 
 import argparse
 import sys
-from importlib.metadata import entry_points
+from importlib.metadata import entry_points, version
 
 from .streams import lossy_output
 
@@ -21,7 +21,8 @@ def main() -> int:
 def _run() -> int:
     parser = argparse.ArgumentParser(
         prog='shared-control', description='Teach a robot together with a learning agent.')
-    commands = parser.add_subparsers(title='commands', metavar='COMMAND', required=True)
+    parser.add_argument('--version', action='version', version=f'%(prog)s {version("shared-control")}')
+    commands = parser.add_subparsers(title='commands', metavar='COMMAND')
     known = sorted(entry_points(group='shared_control.commands'), key=lambda e: e.name)
     # Only the one that is asked for, if it is there: some import torch, which takes seconds.
     for entry_point in [e for e in known if e.name == (sys.argv[1:] or [''])[0]] or known:
@@ -32,6 +33,9 @@ def _run() -> int:
         else:
             add_command(commands)
     args = parser.parse_args()
+    if 'run' not in args:
+        parser.print_help()
+        return 0
     try:
         return args.run(args)
     except KeyboardInterrupt:

@@ -9,7 +9,6 @@ import os
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 LOOKS_FOR = 1.0
 """Nodes that run announce themselves twice a second, and answer who asks within some ms, s."""
@@ -82,7 +81,7 @@ def look() -> str:
     other.create_publisher(contract.PHASE.msg_type, other.get_name(), 1)
     while not me.count_publishers(other.get_name()):
         if time.monotonic() - began > MEETS_WITHIN:
-            return f'nodes on this machine do not find each other{_shared_memory()}'
+            return 'nodes on this machine do not find each other: `shared-control doctor` looks for the reason'
         time.sleep(0.02)
     while time.monotonic() - began < LOOKS_FOR:
         time.sleep(0.05)
@@ -96,19 +95,6 @@ def look() -> str:
         return (f'{", ".join(sorted(there))} already in ROS domain {os.environ.get("ROS_DOMAIN_ID") or 0}: end '
                 'that first, or set ROS_DOMAIN_ID to another number, so that the two do not disturb each other')
     return ''
-
-
-def _shared_memory() -> str:
-    """What is wrong with /dev/shm, through which nodes of one machine talk."""
-    folder = Path('/dev/shm')
-    try:
-        free = os.statvfs(folder)
-    except OSError as error:
-        return f' ({folder}: {error.strerror})'
-    if not os.access(folder, os.W_OK):
-        return f' ({folder} cannot be written)'
-    megabytes = free.f_bavail * free.f_frsize / 1e6
-    return f' ({folder} has {megabytes:.1f} MB free)' if megabytes < 20 else ''
 
 
 if __name__ == '__main__':

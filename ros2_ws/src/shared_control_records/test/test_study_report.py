@@ -57,6 +57,16 @@ def test_the_bootstrap_covers_the_truth_as_often_as_it_says():
     assert 180 <= covered <= 199
 
 
+def test_few_or_equal_values_have_no_interval_that_looks_certain():
+    few = bootstrap(np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]), np.repeat(['expert', 'novice'], [2, 5]))
+    assert few.value == 4.0 and np.isnan([few.low, few.high]).all()
+    always = improvement(np.ones(8), np.zeros(8))
+    assert always.value == 1.0 and np.isnan([always.low, always.high]).all()
+    pair = survival(Times(np.array([3.0, 5.0]), np.array([True, True])))
+    assert pair.median.value == 3.0 and np.isnan([pair.median.low, pair.median.high]).all()
+    assert np.isnan(pair.low[1:]).all()
+
+
 def test_survival_counts_who_was_given_up():
     curve = survival(Times(np.array([3.0, 5.0, 5.0, 8.0, 20.0, 20.0]), np.array([1, 1, 1, 1, 0, 0], bool)))
     assert curve.episodes.tolist() == [0, 3, 5, 8, 20]

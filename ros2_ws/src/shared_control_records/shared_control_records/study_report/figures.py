@@ -72,7 +72,7 @@ def draw_returns(figure: Figure, study: Study) -> pd.DataFrame:
                       markersize=3.5, label=f'{condition}, best (participant {run.participant})' if is_best else None)
             rows += [{'condition': condition, 'participant': run.participant, 'episode': number, 'return': value}
                      for number, value in zip(numbers, returns, strict=True)]
-    axes.legend(loc='lower right')
+    figure.legend(loc='outside right upper')  # wherever it lay within, a curve would run below it
     return pd.DataFrame(rows)
 
 
@@ -96,11 +96,12 @@ def draw_episodes(figure: Figure, study: Study) -> pd.DataFrame:
                             linewidth=0)
         rows += [{'condition': condition, 'participant': run.participant, 'episodes': episodes, 'skilled': skilled}
                  for run, episodes, skilled in zip(study.of(condition), reached.episodes, reached.reached, strict=True)]
-    dots.set(title='Episodes to skilled; bar: median', ylabel='Episodes', ylim=(0, None))
+    longest = max(row['episodes'] for row in rows)
+    dots.set(title='Episodes to skilled; bar: median', ylabel='Episodes', ylim=(0, 1.25 * longest),  # room for a legend
+             xlim=(-0.5, len(study.conditions) - 0.5))
     dots.set_xticks(range(len(study.conditions)), study.conditions)
     dots.plot([], [], '^', color=FAINT, markerfacecolor='none', label='not skilled when training ended')
     dots.legend(loc='upper left')
-    dots.margins(x=0.12, y=0.22)
     curves.set(title='Not yet skilled (Kaplan-Meier, 95 %)', xlabel='Episodes', ylabel='Share of runs (%)',
                ylim=(0, 103))
     curves.legend(loc='best')
@@ -110,9 +111,12 @@ def draw_episodes(figure: Figure, study: Study) -> pd.DataFrame:
 def draw_test(test: str, track: str) -> Draw:
     """Figs. 16 to 19: mean of a track over the policies of each condition, +- SEM; the best five, and all."""
     def draw(figure: Figure, study: Study) -> pd.DataFrame:
-        best, everyone = figure.subplots(1, 2, sharey=True)
+        panels = [(BEST, f'Best {BEST} of each condition'), (None, 'All')]
+        if all(len(study.of(condition)) <= BEST for condition in study.conditions):
+            panels = panels[1:]  # the best five are all
         rows = []
-        for axes, count, title in ((best, BEST, f'Best {BEST} of each condition'), (everyone, None, 'All')):
+        of_panels = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+        for axes, (count, title) in zip(of_panels, panels, strict=True):
             axes.set(title=title, xlabel='Time in the episode (s)')
             _mark_pushes(axes, test)
             for condition in study.conditions:
@@ -128,7 +132,7 @@ def draw_test(test: str, track: str) -> Draw:
                     'policies': title, 'condition': condition, 'seconds': tested[0].seconds, 'mean': mean, 'sem': sem,
                     'n': len(tested)}))
             _legend(axes, 'no policy went through this test')
-        best.set_ylabel(_label(track))
+        of_panels[0].set_ylabel(_label(track))
         return pd.concat(rows) if rows else pd.DataFrame()
 
     return draw
@@ -140,6 +144,8 @@ def draw_actions(first: str, second: str) -> Draw:
         panels = figure.subplots(1, 2, sharey=True)
         condition = next((c.name for c in study.plan.conditions if c.taught and study.of(c.name)), None)
         rows = []
+        for axes in panels:
+            axes.tick_params(labelleft=True)  # one of the two may be empty
         for axes, group in zip(panels, (first, second), strict=True):
             runs = _group(study, condition, group) if condition else []
             axes.set(title=f'{group.capitalize()} performers (n = {len(runs)})', xlabel='Episode of training')

@@ -71,6 +71,7 @@ def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list) -> str:
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True,
                                      lstrip_blocks=True)
     environment.filters['number'] = _number
+    environment.filters['interval'] = _interval
     simulated = study.plan.people is None
     conditions, comparisons, groups = (
         tables[name].to_dict('records') for name in ('conditions', 'comparisons', 'groups'))
@@ -107,6 +108,12 @@ def _reduction(study: Study) -> list[tuple[str, float]]:
                for c in study.plan.conditions if c.taught and study.of(c.name)}
     return [(name, 1 - median / without) for name, median in medians.items()
             if math.isfinite(median) and math.isfinite(without)]
+
+
+def _interval(row: dict[str, Any], form: str) -> str:
+    if math.isnan(row['low']):
+        return 'no interval'
+    return f'{_number(row["low"], form)} to {_number(row["high"], form)}'
 
 
 def _number(value: Any, form: str) -> str:

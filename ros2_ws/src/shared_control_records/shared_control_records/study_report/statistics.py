@@ -14,11 +14,17 @@ from scipy import stats
 
 CONFIDENCE = 0.95
 RESAMPLES = 5000
+ENOUGH = 5
+"""Participants in a group below which no interval is given: one that is drawn from one or two looks certain."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number and its 95 % interval; nan where there is nothing to tell it from, inf where it was never reached."""
+    """A number and its 95 % interval; inf where it was never reached.
+
+    nan where there is nothing to tell it from: an interval of fewer than :data:`ENOUGH` in a group, or of values that
+    are all alike, would have no width and look certain.
+    """
 
     value: float
     low: float
@@ -43,6 +49,8 @@ def bootstrap(values: np.ndarray, strata: np.ndarray, statistic: Callable[[np.nd
         return Estimate(np.nan, np.nan, np.nan)
     random = np.random.default_rng(seed)
     members = [np.flatnonzero(strata == stratum) for stratum in np.unique(strata)]
+    if min(map(len, members)) < ENOUGH or np.ptp(values) == 0.0:
+        return Estimate(float(statistic(values)), np.nan, np.nan)
     drawn = np.hstack([random.choice(rows, (RESAMPLES, len(rows))) for rows in members])
     tail = 50 * (1 - CONFIDENCE)
     low, high = np.percentile(statistic(values[drawn]), [tail, 100 - tail])
@@ -111,9 +119,14 @@ def survival(times: Times) -> Survival:
     def when_half(shares: np.ndarray) -> float:
         return float(curve.quantiles[shares <= 0.5].min(initial=np.inf))
 
+    if len(times.episodes) < ENOUGH:
+        low, high = np.full((2, len(waiting)), np.nan)
+        median = Estimate(when_half(waiting), np.nan, np.nan)
+    else:
+        median = Estimate(when_half(waiting), when_half(low), when_half(high))
     return Survival(
         np.concatenate([[0.0], curve.quantiles]), np.concatenate([[1.0], waiting]), np.concatenate([[1.0], low]),
-        np.concatenate([[1.0], high]), Estimate(when_half(waiting), when_half(low), when_half(high)))
+        np.concatenate([[1.0], high]), median)
 
 
 def _held(band: np.ndarray) -> np.ndarray:
