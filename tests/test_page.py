@@ -204,7 +204,8 @@ class TestASessionByTheKeyboardAlone:
     """In this order, from the practice to the end card and beyond."""
 
     @pytest.fixture(scope='class')
-    def session(self, domain_id, tmp_path_factory):
+    @staticmethod
+    def session(domain_id, tmp_path_factory):
         folder = tmp_path_factory.mktemp('session') / 'session'
         process, address = serve('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder))
         yield process, address, folder
