@@ -7,7 +7,7 @@ SRC := ros2_ws/src
 MINUTES := 60
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test coverage lint docs wheel bench faults soak weight count colcon clean
+.PHONY: help setup demo session test coverage lint docs wheel bench faults soak pictures weight count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
@@ -20,6 +20,7 @@ help:
 	@echo 'make bench    measurements (out/bench.json)'
 	@echo 'make faults   faults at random moments of live sessions, and what must hold in spite of them (out/faults.json)'
 	@echo 'make soak     a long session, and whether anything grows; MINUTES=60 (out/soak.json)'
+	@echo 'make pictures the page in all its states, at five sizes (out/pictures)'
 	@echo 'make weight   what the controller alone installs (out/weight.json)'
 	@echo 'make count    the size of the code, and what is tied to one task or robot, at the first version and now'
 	@echo 'make colcon   colcon build and colcon test of the workspace'
@@ -68,6 +69,9 @@ lint: setup
 
 count: setup
 	$(BIN)/python tools/count.py $(ARGS)
+
+pictures: setup
+	$(BIN)/python tools/pictures.py out/pictures
 
 weight: setup
 	$(BIN)/python tools/weight.py --output out/weight.json

@@ -1,5 +1,6 @@
 """The teaching page of a task with two axes in a real browser, with a session on the live graph behind it."""
 
+import itertools
 import re
 import signal
 
@@ -105,3 +106,7 @@ class TestTheDetourOnThePage:
                 'return [b.left, b.top, b.right, b.bottom]')
             assert right - left > 20 and bottom - top > 14, selector
             assert left >= 0 and top >= 0 and right <= inner[0] + 1 and bottom <= inner[1] + 1, selector
+            if selector == 'svg .plate':
+                for x, y in itertools.product((left + 4, right - 4), (top + 4, bottom - 4)):
+                    assert browser.script(f'return document.elementFromPoint({x}, {y}).closest("svg") !== null'), (
+                        'something lies over the plate', x, y)

@@ -141,7 +141,7 @@ def _draw_test_from_above(axes: Axes, task: Task, test: FinalTest | None) -> Non
 def _draw_scale(axes: Axes, colours: Normalize) -> None:
     bar = axes.figure.colorbar(ScalarMappable(colours, SEQUENCE.reversed()), ax=axes, pad=0.02, aspect=30,
                                label='Episode (early to late)')
-    bar.ax.yaxis.set_major_locator(MaxNLocator(integer=True))
+    bar.ax.yaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     bar.outline.set_visible(False)  # type: ignore[operator]
 
 
@@ -220,7 +220,7 @@ def _moving_mean(moment: np.ndarray) -> np.ndarray:
 
 def _draw_returns(axes: Axes, rows: list[EpisodeRow]) -> None:
     axes.set(title='Return by episode', xlabel='Episode', ylabel='Sum of rewards')
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     points = [(row.number, row.episode_return, row.fallen) for row in rows if row.episode_return is not None]
     if not points:
         say_empty(axes, 'no episodes')
@@ -232,13 +232,13 @@ def _draw_returns(axes: Axes, rows: list[EpisodeRow]) -> None:
     if any(fell):
         down = np.array([bool(f) for f in fell])
         axes.plot(np.array(numbers)[down], np.array(returns)[down], 'x', color=AGENT, markeredgewidth=2.2, markersize=7)
-        axes.legend(handles=[cross(AGENT, 'the ball fell')], loc='lower right')
+        axes.legend(handles=[cross(AGENT, 'the ball fell')], loc='best', frameon=True)
     axes.margins(x=0.08, y=0.12)
 
 
 def _draw_shares(axes: Axes, rows: list[EpisodeRow]) -> None:
-    axes.set(title='How much was human', xlabel='Episode', ylabel='Human share of the moment (%)', ylim=(0, 100))
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set(title='Human share by episode', xlabel='Episode', ylabel='Human share of the moment (%)', ylim=(0, 100))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     points = [(row.number, 100 * row.human_share) for row in rows if row.human_share is not None]
     if not points:
         say_empty(axes, 'no episodes')
@@ -263,8 +263,9 @@ def _draw_test_results(axes: Axes, test: FinalTest | None) -> None:
     axes.axhspan(0, limit, color=GOOD, alpha=0.12, linewidth=0)
     for episode in test.episodes:
         colour = GOOD if episode.success else BAD
+        marker = 'o' if episode.success else '^' if episode.kept else 'x'  # told apart without colours, too
         height = min(100 * episode.position_error, top)
-        axes.plot(100 * episode.ball_start, height, 'o' if episode.kept else 'x', color=colour, clip_on=False,
+        axes.plot(100 * episode.ball_start, height, marker, color=colour, clip_on=False,
                   markersize=7, markeredgewidth=1.0 if episode.kept else 2.5, alpha=0.85)
     axes.set_ylim(0, top)
     axes.annotate(f'success: under {limit:.0f} cm, and at rest', (0.99, limit), xycoords=('axes fraction', 'data'),

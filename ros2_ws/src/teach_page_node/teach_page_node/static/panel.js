@@ -74,7 +74,8 @@ function says(picture, doing) {
 function showCard(picture) {
   const isBetween = (phase === "learn" || phase === "wait") && !picture.paused;
   const outcome = isBetween ? picture.outcome : null;
-  const next = isBetween && picture.next_in !== null ? `Next in ${Math.max(1, Math.ceil(picture.next_in))} …` : "";
+  const countdown = `Next in ${Math.max(1, Math.ceil(picture.next_in))} …`;
+  const next = !isBetween || picture.next_in === null ? "" : picture.ends_teaching ? "Now the robot is tested." : countdown;
   setText("card-outcome", outcome ? `${outcome.is_good ? "✓ " : ""}${outcome.words}` : "");
   setText("card-next", next || (phase === "learn" && isBetween ? "The robot is learning …" : ""));
   part("card").classList.toggle("good", Boolean(outcome?.is_good));

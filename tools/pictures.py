@@ -1,0 +1,150 @@
+"""Pictures of the page in all its states, at five sizes of window: what teacher and viewer see.
+
+    python tools/pictures.py out/pictures
+
+Starts a session on the page and teaches one episode badly, plays the session back, and opens the detour's practice.
+Each state is one picture a size, STATE-WIDTHxHEIGHT.png. Needs Chromium (tools/install_browser.sh). ``--docs`` puts
+those that the documentation shows into docs/images.
+"""
+
+import argparse
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from PIL import Image
+from selenium.webdriver.common.keys import Keys
+from shared_control_testing.page import Browser, serve
+from tqdm import tqdm
+
+SIZES = ((1920, 1080), (1366, 768), (844, 390), (683, 384), (390, 844))
+"""Two screens, a phone held sideways, 1366 x 768 at 200 %, a phone."""
+SETTLED = 0.6
+"""What a window needs to draw itself at a new size, s."""
+IN_DOCS = {
+    'practice': 'page-practice', 'teach': 'page-teach', 'replay': 'page-replay', 'detour-practice': 'page-detour'}
+COLOURS = 128
+"""Of a picture in the documentation: a third of the bytes, and no difference to be seen."""
+DOCS_SIZE = (1366, 768)
+DOCS = Path(__file__).parents[1] / 'docs' / 'images'
+
+
+class Camera:
+    """Takes pictures of a browser's page."""
+
+    def __init__(self, browser: Browser, folder: Path, progress: tqdm):
+        self._browser = browser
+        self._folder = folder
+        self._progress = progress
+
+    def take(self, state: str, sizes: tuple[tuple[int, int], ...] = SIZES) -> None:
+        """A picture of what is shown now at each size; the last size is the largest again."""
+        for width, height in sizes:
+            self._browser.size(width, height)
+            time.sleep(SETTLED)
+            self._browser.driver.save_screenshot(str(self._folder / f'{state}-{width}x{height}.png'))
+        self._browser.size(*sizes[0])
+        self._progress.update()
+
+
+@contextmanager
+def served(*arguments: str, ends_by: int = signal.SIGTERM) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A command that serves a page, and its address; ended at last."""
+    process, address = serve(*arguments)
+    try:
+        yield process, address
+    finally:
+        if process.poll() is None:
+            process.send_signal(ends_by)
+        process.communicate(timeout=90)
+
+
+def teach(browser: Browser, camera: Camera, folder: Path) -> None:
+    """From the practice to the end card."""
+    with served('session', '--tutor', 'page', '--test-episodes', '3', '--output', str(folder)) as (_, address):
+        browser.open(address)
+        browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
+        browser.type(Keys.ARROW_LEFT)
+        camera.take('practice')
+        window = browser.open_tab(address)
+        browser.wait(lambda: browser.text('role') != 'you teach', 'the second window')
+        camera.take('watching')
+        browser.driver.close()
+        browser.driver.switch_to.window(next(name for name in browser.driver.window_handles if name != window))
+        browser.part('start').click()
+        browser.wait(lambda: browser.text('card-next'), 'the countdown')
+        camera.take('countdown', SIZES[1:2])
+        browser.wait(lambda: browser.text('phase').startswith('Teach'), 'teaching')
+        browser.type('p')
+        browser.wait(lambda: browser.text('pause-text') == 'Go on', 'the pause')
+        camera.take('paused')
+        browser.type('p')
+        browser.wait(lambda: browser.text('pause-text') == 'Pause', 'going on')
+        browser.type(Keys.ARROW_LEFT)
+        time.sleep(1.0)
+        camera.take('teach', SIZES[1:2])
+        browser.wait(lambda: browser.part('finish').click() or browser.part('sure').is_displayed(), 'the question')
+        camera.take('question', SIZES[1:2])
+        browser.part('yes').click()
+        for _ in range(4):
+            browser.type(Keys.ARROW_LEFT)
+        browser.wait(lambda: browser.text('card-outcome'), 'how the episode ended', 60.0)
+        camera.take('outcome', SIZES[1:2])
+        browser.wait(lambda: browser.part('end').is_displayed(), 'the end', 120.0)
+        camera.take('testing', SIZES[1:2])
+        browser.wait(lambda: browser.part('close').is_displayed(), 'the result', 180.0)
+        time.sleep(1.0)
+        camera.take('end')
+        browser.part('close').click()
+
+
+def replay(browser: Browser, camera: Camera, folder: Path) -> None:
+    """The session played back, from its middle."""
+    with served('replay', str(folder), ends_by=signal.SIGINT) as (_, address):
+        browser.open(address)
+        browser.script('const s = document.querySelector("[data-part=slider]"); s.value = s.max / 2;'
+                       's.dispatchEvent(new Event("input"))')
+        time.sleep(2.0)
+        camera.take('replay')
+
+
+def two_axes(browser: Browser, camera: Camera, folder: Path) -> None:
+    """The practice of the task with two axes."""
+    with served('session', '--task', 'detour', '--tutor', 'page', '--test-episodes', '0', '--output',
+                str(folder)) as (_, address):
+        browser.open(address)
+        browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
+        browser.type(Keys.ARROW_LEFT)
+        browser.type(Keys.ARROW_UP)
+        camera.take('detour-practice')
+
+
+def main() -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('output', type=Path, help='folder for the pictures')
+    parser.add_argument('--docs', action='store_true', help='put those that the documentation shows into docs/images')
+    args = parser.parse_args()
+    args.output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as sessions, tqdm(total=11, unit='state') as progress:
+        for show in (teach, replay, two_axes):
+            # A session is played back from where it was recorded.
+            folder = Path(sessions, 'detour' if show is two_axes else 'session')
+            browser = Browser(*SIZES[0])
+            try:
+                show(browser, Camera(browser, args.output, progress), folder)
+            finally:
+                browser.close()
+    if args.docs:
+        for state, name in IN_DOCS.items():
+            taken = Image.open(args.output / f'{state}-{DOCS_SIZE[0]}x{DOCS_SIZE[1]}.png')
+            taken.convert('RGB').quantize(COLOURS).save(DOCS / f'{name}.png', optimize=True)
+    print(args.output)
+
+
+if __name__ == '__main__':
+    main()
