@@ -56,6 +56,8 @@ class SessionNode:
 
 BREAK_SECONDS = 3.0
 """Before and between episodes, when a person teaches, s."""
+TELLS_LITTLE = {'feedback': 'ball', 'shows_result': False}
+"""Parameters of the page for a person who is to know neither how the robot learns nor what came of it."""
 BESIDE_A_SIMULATOR = {'enabled': True}
 """Parameters of the controller where whoever starts it also starts a simulator. Nowhere else is it enabled without a
 person."""
@@ -86,7 +88,7 @@ NODES = (
         'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'host': s.settings.page[0], 'port': s.settings.page[1],
-        'session': str(s.folder.path)}, Role.STOPPER, tutor='page'),
+        'session': str(s.folder.path), **(TELLS_LITTLE if s.settings.blind else {})}, Role.STOPPER, tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {
         'task': s.settings.task, 'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
         'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',

@@ -42,6 +42,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add('--seed', f'of ball starts, learner and simulated tutor (default: {default.seed})', type=int)
     add('--screen', 'show the lesson in the terminal; --no-screen: print a line an episode instead',
         action=argparse.BooleanOptionalAction)
+    add('--blind', 'tell the person neither how the robot learns nor what came of it, as a study does',
+        action='store_true')
     add('--output', 'folder of the session (default: a new one below out/sessions)', type=Path)
     add('--overwrite', 'remove what an earlier session wrote in that folder, and nothing else', action='store_true')
     add('--params-file', f'ROS parameters of the nodes; what it does not name is as in {DEFAULTS.name} of this package',

@@ -63,7 +63,8 @@ def run(args: argparse.Namespace) -> int:
             folder = earlier
             folder.claim()
         ros_parameters.save(parameters, folder.parameters)
-        print(f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
+        print('The session begins.' if settings.blind else
+              f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
         end, restarts, page_node = _teach(settings, folder, shows_screen, page, interrupts)
         try:
             end = _report(folder, end, restarts, settings, interrupts)
@@ -90,7 +91,8 @@ def _test_only(settings: Settings, folder: SessionFolder) -> int:
     with Interrupts() as interrupts:
         folder.claim()
         folder.write_settings(settings.to_json())
-        print(f'Session in {folder.path}: the teaching is over, the robot is tested.', flush=True)
+        place = '' if settings.blind else f'Session in {folder.path}: '
+        print(f'{place}the teaching is over, the robot is tested.', flush=True)
         return _report(folder, End.DONE, _earlier_restarts(folder), settings, interrupts).value
 
 
@@ -122,7 +124,7 @@ def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: 
     earlier_restarts = _earlier_restarts(folder)
     folder.write_settings(replace(settings, taught=False).to_json())
     folder.ending.unlink(missing_ok=True)
-    end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts)
+    end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts, settings.blind)
     times = [path.stat().st_mtime_ns for path in (folder.test, folder.policy) if path.exists()]
     if times != sorted(times, reverse=True):
         folder.test.unlink()  # the policy has learned since
@@ -153,11 +155,13 @@ def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, 
         print('Writing the report ...', flush=True)
         _complete_bag(folder, restarts)
         summary = write_report(folder, restarts)
-        tell_summary(folder, summary)
+        if not settings.blind:
+            tell_summary(folder, summary)
         tell_page(folder, 'over', of=summary.autonomous_episodes, successes=summary.autonomous_success)
     finally:
         if end is not End.DONE:
-            print(f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)
+            print('Stopped before the end.' if settings.blind else
+                  f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)
     return end
 
 

@@ -49,6 +49,8 @@ class Settings:
     """What counts of the two moments: one of ``WAYS``."""
     screen: bool = True
     """Whether to show the lesson in the terminal."""
+    blind: bool = False
+    """Whether the person is told neither how the robot learns nor what came of it."""
     earlier_tutors: tuple[str, ...] = ()
     """Who taught the earlier parts of a session that went on with another tutor, as settings.json names them."""
     taught: bool = False

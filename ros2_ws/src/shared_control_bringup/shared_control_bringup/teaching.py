@@ -27,7 +27,7 @@ class End(Enum):
 
 
 def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | None,
-          interrupts: Interrupts) -> tuple[End, int, NodeProcess | None]:
+          interrupts: Interrupts, blind: bool) -> tuple[End, int, NodeProcess | None]:
     """Run the graph until the agent is done or somebody stops it.
 
     Args:
@@ -36,6 +36,7 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
         shows_screen: whether the lesson is shown in the terminal.
         page: whose address is printed when it can be opened.
         interrupts: how somebody stops it from the terminal, or by a signal.
+        blind: whether the terminal keeps to itself how each episode went.
 
     Returns:
         How it ended, how often nodes were started again, and the node of the page when that stays for the result.
@@ -48,13 +49,16 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
         in_real_time=paced, environment=environment.get(node.name), after=node.after) for node in nodes_of(tutor)]
     log = (folder.logs / 'session.log').open('a')
 
-    def say(text: str) -> None:
+    def note(text: str) -> None:
         print(time.strftime('%H:%M:%S'), text, file=log, flush=True)
+
+    def say(text: str) -> None:
+        note(text)
         if not shows_screen:
             print(text, flush=True)
 
     (leader,), (stopper,) = named(Role.LEADER), named(Role.STOPPER)
-    episodes = EpisodePrinter(folder.episodes, say)
+    episodes = EpisodePrinter(folder.episodes, note if blind else say)
     waits = Waits(nodes, say)
 
     def attend() -> None:

@@ -28,7 +28,7 @@ class NoNeighbours:
 @pytest.fixture
 def session(monkeypatch):
     """``session(*arguments)``: run the command with a graph that is done at once; its exit code."""
-    def teach(folder, tutor, shows_screen, page, interrupts):
+    def teach(folder, tutor, shows_screen, page, interrupts, blind):
         run.page = page
         run.taught += 1
         folder.release()
@@ -88,6 +88,16 @@ def test_a_refused_start_leaves_everything_as_it_was(session, tmp_path, monkeypa
         assert said in capsys.readouterr().err
     assert content(old) == before
     assert not (tmp_path / 'new').exists(), 'a half-made folder would block the next try'
+
+
+def test_a_blind_session_says_neither_condition_nor_folder_and_stays_blind(session, tmp_path, capsys):
+    folder = tmp_path / 'session'
+    assert session('--tutor', 'page', '--page', '127.0.0.1:0', '--blind', '--output', folder) == 0
+    assert session('--resume', folder, '--minutes', 5) == 0
+    said = ''.join(capsys.readouterr())
+    assert 'coached' not in said and str(folder) not in said
+    page = load(folder / 'parameters.yaml')['teach_page_node']
+    assert (page['feedback'], page['shows_result']) == ('ball', False)
 
 
 def test_overwriting_removes_what_a_session_writes_and_nothing_else(session, tmp_path, capsys):

@@ -55,10 +55,10 @@ def test_consent_practice_teaching_and_questions_in_this_order(study, answers):
     person = folder.person(plan.participant(1))
     assert [call[call.index('--output') + 1] for call in sessions.calls] == [
         str(person / name) for name in ('practice', 'coached', 'thesis')]
-    assert all(call[-2:] == ['--params-file', 'own.yaml'] for call in sessions.calls)
-    assert sessions.calls[0][6:-2] == [
+    assert all('--blind' in call and call[-2:] == ['--params-file', 'own.yaml'] for call in sessions.calls)
+    assert sessions.calls[0][7:-2] == [
         '--preset', 'coached', '--physics', 'bullet', '--episodes', '1', '--test-episodes', '0']
-    assert sessions.calls[2][6:-2] == [
+    assert sessions.calls[2][7:-2] == [
         '--preset', 'thesis', '--physics', 'bullet', '--sharing', 'additive', '--minutes', '30.0']
     progress = Progress.of(person)
     assert progress.taught == ['coached', 'thesis'] and progress.consented

@@ -47,7 +47,7 @@ def lead_through(folder: StudyFolder, plan: Plan, participant: Participant, run_
     for number, condition in enumerate(order, start=1):
         if condition.name not in progress.taught:
             if not _run(folder.session(Job(participant, condition)), _teaching(condition, people), participant, people,
-                        run_session, f'Teaching, {number} of {len(order)}: press q when it has learned it; '
+                        run_session, f'Teaching, {number} of {len(order)}: press q twice when you are done; '
                                      f'after {people.minutes:g} minutes it ends by itself.'):
                 return False
             progress.taught.append(condition.name)
@@ -84,8 +84,8 @@ def _run(path: Path, arguments: list[str], participant: Participant, people: Peo
     if _begun(path):
         code = run_session(['--resume', str(path)])
     else:
-        code = run_session(['--tutor', 'keyboard', '--seed', str(participant.seed), '--output', str(path), *arguments,
-                            *people.session_options])
+        code = run_session(['--tutor', 'keyboard', '--seed', str(participant.seed), '--output', str(path), '--blind',
+                            *arguments, *people.session_options])
     if code not in (0, INTERRUPTED):
         raise StudyError(f'the session in {path} failed (exit code {code}); its log/ tells more. '
                          'Start the same command again to go on')
