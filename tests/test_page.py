@@ -8,7 +8,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import alert_is_present
 from selenium.webdriver.support.wait import WebDriverWait
 from shared_control_ros import contract
-from shared_control_testing.page import Browser, serve
+from shared_control_testing.page import SIZES, Browser, serve
 from shared_control_testing.sessions import lesson, record
 
 pytestmark = pytest.mark.alone
@@ -192,8 +192,6 @@ class TestASessionOnThePage:
         assert 'Stopped before the end' in said and 'Traceback' not in said
 
 
-SIZES = ((1920, 1080), (1366, 768), (844, 390), (683, 384), (390, 844))
-"""Two screens, a phone held sideways, 1366 x 768 at 200 %, a phone."""
 NEEDED = ('.phase', '[data-part=close-view]', '[data-key=left]', '[data-key=space]', '[data-key=right]',
           '[data-part=start]', '[data-part=pause]', '[data-part=stop]')
 BOX = ('const b = document.querySelector("%s").getBoundingClientRect();'

@@ -18,11 +18,9 @@ from pathlib import Path
 
 from PIL import Image
 from selenium.webdriver.common.keys import Keys
-from shared_control_testing.page import Browser, serve
+from shared_control_testing.page import SIZES, Browser, serve
 from tqdm import tqdm
 
-SIZES = ((1920, 1080), (1366, 768), (844, 390), (683, 384), (390, 844))
-"""Two screens, a phone held sideways, 1366 x 768 at 200 %, a phone."""
 SETTLED = 0.6
 """What a window needs to draw itself at a new size, s."""
 IN_DOCS = {

@@ -147,3 +147,8 @@ ROBOT_RECOVERY = Service('robot/error_recovery', _TRIGGER, 'bridge, mock', 'leav
 SERVICES = (
     RESET, PAUSE, REST, SEED, LEARNER_START, LEARNER_REPEAT, LEARNER_FINISH, LEARNER_KEEP_TEACHING, CONTROLLER_ENABLE,
     CONTROLLER_STOP, CONTROLLER_RESET, ROBOT_ENABLE, ROBOT_RECOVERY)
+
+
+def answer_label(stamp_ns: int) -> str:
+    """What the dimension of a torque command is called that answers joint states of a stamp, ns."""
+    return str(stamp_ns).zfill(ANSWER_DIGITS)

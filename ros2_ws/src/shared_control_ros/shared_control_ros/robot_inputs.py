@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 from rclpy.node import Node
-from shared_control.contract import ANSWER_DIGITS
+from shared_control.contract import ANSWER_DIGITS, answer_label
 from shared_control.world import World
 from std_msgs.msg import Float64MultiArray
 
 from . import contract
 from .fast_loop import Polled
-from .torque_command import command_layout, label_of
+from .torque_command import command_layout
 from .wire import read_message
 
 
@@ -37,7 +37,8 @@ class TorqueInput(Polled):
             self._refuse(f'expected {self._dof} finite torques, got {torque[:10].tolist()}')
             return None
         says_stamp = len(label) == ANSWER_DIGITS and label.isdigit()
-        return None if stamp_ns is not None and says_stamp and label != label_of(stamp_ns) else torque
+        is_another = stamp_ns is not None and says_stamp and label != answer_label(stamp_ns).encode()
+        return None if is_another else torque
 
     def _parts(self, data: bytes) -> tuple[np.ndarray, bytes]:
         """The torques, whatever they are, and what the dimension is called.
@@ -51,7 +52,7 @@ class TorqueInput(Polled):
         dimensions = message.layout.dim
         label = dimensions[0].label.encode() if dimensions else b''
         if len(label) == ANSWER_DIGITS:
-            dimensions[0].label = label_of(0).decode()  # as the layout has it
+            dimensions[0].label = answer_label(0)  # as the layout has it
             self._layout.learn(message, data)
         return np.array(message.data), label
 

@@ -6,26 +6,21 @@ torque from then on a tick late. Effort controllers of robots look at the data a
 """
 
 from rclpy.serialization import serialize_message
-from shared_control.contract import ANSWER_DIGITS
+from shared_control.contract import answer_label
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
 
 from .wire import WireLayout
 
 
-def label_of(stamp_ns: int) -> bytes:
-    """What the dimension is called in the answer to joint states of this stamp."""
-    return str(stamp_ns).zfill(ANSWER_DIGITS).encode()
-
-
 def torque_command(torque: list[float], stamp_ns: int) -> Float64MultiArray:
     """The answer to joint states of a stamp: torques, (n,), N m."""
-    dimension = MultiArrayDimension(label=label_of(stamp_ns).decode(), size=len(torque), stride=len(torque))
+    dimension = MultiArrayDimension(label=answer_label(stamp_ns), size=len(torque), stride=len(torque))
     return Float64MultiArray(layout=MultiArrayLayout(dim=[dimension]), data=torque)
 
 
 def command_layout(dof: int) -> WireLayout:
     """Where torques and label lie in an answer with ``dof`` torques."""
-    return WireLayout(torque_command([0.0] * dof, 0), ('data',), text=label_of(0))
+    return WireLayout(torque_command([0.0] * dof, 0), ('data',), text=answer_label(0).encode())
 
 
 class TorqueBytes:
@@ -40,5 +35,5 @@ class TorqueBytes:
 
     def answer(self, stamp_ns: int) -> bytes:
         """The message that answers joint states of this stamp."""
-        self._bytes[self._label] = label_of(stamp_ns)
+        self._bytes[self._label] = answer_label(stamp_ns).encode()
         return bytes(self._bytes)

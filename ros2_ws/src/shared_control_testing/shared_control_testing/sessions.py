@@ -10,7 +10,7 @@ import numpy as np
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
-from shared_control.contract import ANSWER_DIGITS, Topic
+from shared_control.contract import Topic, answer_label
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import panda
 
@@ -55,7 +55,7 @@ def joint_state(ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> A
 
 def command(ns: int, torque: np.ndarray) -> Any:
     """Torques that answer the joint states of a stamp."""
-    dimension = message('std_msgs/msg/MultiArrayDimension', label=str(ns).zfill(ANSWER_DIGITS), size=len(torque),
+    dimension = message('std_msgs/msg/MultiArrayDimension', label=answer_label(ns), size=len(torque),
                         stride=len(torque))
     return message('std_msgs/msg/Float64MultiArray', data=torque,
                    layout=message('std_msgs/msg/MultiArrayLayout', dim=[dimension], data_offset=0))
