@@ -9,10 +9,11 @@ import inspect
 import os
 import pkgutil
 import tomllib
-from importlib.metadata import distribution, entry_points
+from importlib.metadata import distribution
 from pathlib import Path
 
-from shared_control_testing.parameters import declarations
+from shared_control.cli import known_commands
+from shared_control_ros.declarations import declarations
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ('shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records')
@@ -35,15 +36,21 @@ def write(folder: Path) -> None:
 
 
 def commands() -> str:
-    """The help of ``shared-control`` and its subcommands, as argparse prints it."""
+    """The help of ``shared-control`` and its subcommands, as argparse prints it; and which option is where."""
     os.environ['COLUMNS'] = '100'
-    text = '# Commands\n\n`shared-control COMMAND`; printed by argparse.\n'
-    for entry_point in sorted(entry_points(group='shared_control.commands'), key=lambda entry: entry.name):
-        parser = argparse.ArgumentParser(prog='shared-control')
-        subparsers = parser.add_subparsers()
+    subparsers = argparse.ArgumentParser(prog='shared-control').add_subparsers()
+    for entry_point in known_commands():
         entry_point.load()(subparsers)
-        text += f'\n## {entry_point.name}\n\n```text\n{subparsers.choices[entry_point.name].format_help()}```\n'
-    return text
+    options: dict[str, list[str]] = {}
+    text = ''
+    for name, parser in subparsers.choices.items():
+        text += f'\n## {name}\n\n```text\n{parser.format_help()}```\n'
+        for option in (action.option_strings[-1] for action in parser._actions if action.option_strings):
+            options.setdefault(option, []).append(name)
+    rows = ''.join(f'| `{option}` | {", ".join(where)} |\n' for option, where in sorted(options.items())
+                   if len(where) < len(subparsers.choices))
+    return ('# Commands\n\n`shared-control COMMAND`; printed by argparse. An option means the same wherever it is:\n\n'
+            f'| option | commands |\n|---|---|\n{rows}{text}')
 
 
 def parameters() -> str:
@@ -54,7 +61,7 @@ def parameters() -> str:
     scripts = distribution('shared-control').entry_points.select(group='console_scripts')
     nodes = sorted(script.name for script in scripts if script.name.endswith('_node'))
     for node in nodes:
-        rows = ''.join(f'| `{found.name}` | `{found.default}` | {found.description} |\n'
+        rows = ''.join(f'| `{found.name}` | `{found.shown}` | {found.description} |\n'
                        for found in declarations(node))
         text += f'\n## {node}\n\n' + (f'| parameter | default | what |\n|---|---|---|\n{rows}' if rows else 'None.\n')
     return text

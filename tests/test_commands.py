@@ -37,8 +37,29 @@ def helps():
 def test_a_script_explains_itself_and_does_nothing_else(helps, name):
     output, errors, code, _ = helps[name]
     assert code == 0 and 'Traceback' not in errors
-    expected = '--ros-args' if name.endswith('_node') else 'usage:'
-    assert expected in output and len(output.splitlines()) >= 3
+    assert output.startswith(f'usage: {name} ') and '--version' in output and 'Examples:\n' in output
+    assert '`' not in output
+    if name.endswith('_node'):
+        assert '--ros-args' in output and f'\n  ros2 run {executables()[name]} {name}' in output
+
+
+@pytest.mark.parametrize('name', SCRIPTS)
+def test_a_script_says_its_version(name):
+    done = subprocess.run([Path(sys.executable).parent / name, '--version'], stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (0, f'{name} {version("shared-control")}\n')
+
+
+def executables():
+    """The package of each executable, as for ``ros2 run``."""
+    return {name: setup.parent.name for setup in SOURCES.glob('*/setup.py')
+            for name in re.findall(r"'(\S+) = \S+:main'", setup.read_text())}
+
+
+def test_a_node_shows_its_parameters_with_their_defaults(helps):
+    output = ' '.join(helps['teleop_key_node'][0].split())
+    assert 'keystroke Change of M_yh at one press. [N m] (0.0 to 200.0) (default: 5.0)' in output  # of a constant
+    assert 'in_session' in output and '(default: false)' in output
 
 
 @pytest.mark.parametrize('name', SUBCOMMANDS)
@@ -72,3 +93,10 @@ def test_the_command_alone_helps_and_says_its_version(arguments, said):
     done = subprocess.run([Path(sys.executable).parent / 'shared-control', *arguments], capture_output=True, text=True,
                           timeout=60, check=False)
     assert done.returncode == 0 and said in done.stdout
+
+
+def test_libraries_print_nothing_into_our_output():
+    modules = ('shared_control_sim.bullet', 'shared_control_learning.training', 'shared_control_records.session.report')
+    done = subprocess.run([sys.executable, '-c', f'import {", ".join(modules)}'], capture_output=True, text=True,
+                          check=True)
+    assert (done.stdout, done.stderr) == ('', '')

@@ -16,7 +16,7 @@ from shared_control_bringup.graph import Role, nodes_of, overrides
 from shared_control_bringup.node_process import REAL_TIME_PRIORITY
 from shared_control_bringup.parameters import load
 from shared_control_bringup.settings import Settings
-from shared_control_testing.parameters import declared_parameters
+from shared_control_ros.declarations import declared_parameters
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / 'ros2_ws' / 'src'

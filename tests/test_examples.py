@@ -66,7 +66,7 @@ def test_a_page_shows_what_the_example_says(name, page):
 def test_it_trains(arguments, installed, tmp_path):
     command = [sys.executable, '-m', 'shared_control', 'train', *arguments, '--output', str(tmp_path / 'run'),
                '--json', str(tmp_path / 'result.json'), '--evaluate-every', '0']
-    for episodes, more in ((1, []), (2, ['--resume'])):
+    for episodes, more in ((1, []), (2, ['--resume', str(tmp_path / 'run')])):
         subprocess.run([*command, '--episodes', str(episodes), *more], env=os.environ | installed, check=True,
                        timeout=120)
         assert json.loads((tmp_path / 'result.json').read_text())['episodes'] == episodes

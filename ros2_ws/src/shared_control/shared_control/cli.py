@@ -7,9 +7,14 @@ code.
 
 import argparse
 import sys
-from importlib.metadata import entry_points, version
+from importlib.metadata import EntryPoint, entry_points
 
+from .command_line import add_parser, make_parser
 from .streams import lossy_output
+
+ORDER = ('session', 'replay', 'report', 'view', 'export', 'recover', 'train', 'evaluate', 'tutors', 'study', 'validate',
+         'doctor')
+"""Our commands as they are listed, in the order of use; those of others follow."""
 
 
 def main() -> int:
@@ -19,11 +24,12 @@ def main() -> int:
 
 
 def _run() -> int:
-    parser = argparse.ArgumentParser(
-        prog='shared-control', description='Teach a robot together with a learning agent.')
-    parser.add_argument('--version', action='version', version=f'%(prog)s {version("shared-control")}')
+    parser = make_parser(
+        'Teach a robot together with a learning agent. Each command has a --help of its own.',
+        ['shared-control session', 'shared-control session --tutor page', 'shared-control doctor'],
+        prog='shared-control')
     commands = parser.add_subparsers(title='commands', metavar='COMMAND')
-    known = sorted(entry_points(group='shared_control.commands'), key=lambda e: e.name)
+    known = known_commands()
     # Only the one that is asked for, if it is there: some import torch, which takes seconds.
     for entry_point in [e for e in known if e.name == (sys.argv[1:] or [''])[0]] or known:
         try:
@@ -45,13 +51,18 @@ def _run() -> int:
         return 2
 
 
+def known_commands() -> list[EntryPoint]:
+    """The commands that installed packages add, in the order in which they are listed."""
+    found = sorted(entry_points(group='shared_control.commands'), key=lambda entry: entry.name)
+    return sorted(found, key=lambda entry: ORDER.index(entry.name) if entry.name in ORDER else len(ORDER))
+
+
 def _add_missing(commands: argparse._SubParsersAction, name: str, module: str) -> None:
     """A command whose dependencies are not installed: it says which."""
     text = f'not installed: it needs the module {module!r}; pip install "shared-control[all]" brings all of them'
-    command = commands.add_parser(name, help=text, description=text)
-    command.add_argument('arguments', nargs=argparse.REMAINDER)
 
     def run(_: argparse.Namespace) -> int:
         raise ValueError(f'{name} is {text}')
 
-    command.set_defaults(run=run)
+    command = add_parser(commands, name, run, summary=text, description=text, examples=[f'shared-control {name}'])
+    command.add_argument('arguments', nargs=argparse.REMAINDER, help='ignored')

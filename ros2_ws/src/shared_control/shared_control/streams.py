@@ -1,4 +1,4 @@
-"""Output that nobody reads any more: ``| head``, or a terminal that has hung up."""
+"""Output that nobody reads any more (``| head``, a terminal that has hung up), and output that nobody asked for."""
 
 import os
 import sys
@@ -48,3 +48,20 @@ def lossy_output() -> Iterator[None]:
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
         sys.stdout, sys.stderr = streams
+
+
+@contextmanager
+def muted() -> Iterator[None]:
+    """Drop what is written to the process's stderr meanwhile: the greetings of C libraries that are being imported."""
+    try:
+        saved = os.dup(2)
+    except OSError:  # closed: there is nothing to mute
+        yield
+        return
+    try:
+        with open(os.devnull, 'wb') as nowhere:
+            os.dup2(nowhere.fileno(), 2)
+        yield
+    finally:
+        os.dup2(saved, 2)
+        os.close(saved)

@@ -2,14 +2,20 @@
 
 import argparse
 
+from shared_control.command_line import add_parser
+
 from .options import add_options
 
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``session`` to the ``shared-control`` command."""
-    parser = commands.add_parser('session', help='teach the robot on the running graph', description=__doc__)
-    add_options(parser)
-    parser.set_defaults(run=run)
+    add_options(add_parser(
+        commands, 'session', run, summary='teach the robot',
+        description='Teach the robot on the running graph, keep everything in one folder (bag, policy, settings, '
+                    'report), and test what it has learned. Stopped, by whatever, it goes on with --resume.',
+        examples=['shared-control session', 'shared-control session --tutor page --task plate --minutes 10',
+                  'shared-control session --tutor sim --profile low --episodes 12 --no-screen',
+                  'shared-control session --resume out/sessions/monday --episodes 20']))
 
 
 def run(args: argparse.Namespace) -> int:

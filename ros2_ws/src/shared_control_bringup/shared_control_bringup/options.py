@@ -28,31 +28,33 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         f'{default.tutor})', choices=TUTORS)
     add('--page', 'where the page of --tutor page is served; another host than loopback opens it to the network, with '
         f'a token (default: {default.page[0]}:{default.page[1]})', type=host_and_port, metavar='HOST:PORT')
-    add('--profile', f'who the simulated tutor is: a profile, or a family, of which the seed draws one (default: '
-        f'{default.profile})', choices=TUTOR_NAMES)
-    add('--task', 'what is learned (default: what the preset was made for; balance)', choices=names(TASKS))
-    add('--preset', 'how it is learned (default: as the task is; coached)', choices=names(LEARNERS))
+    add('--profile', f'who the simulated tutor is, a profile or a family of which the seed draws one: '
+        f'{", ".join(TUTOR_NAMES)} (default: {default.profile})', choices=TUTOR_NAMES, metavar='NAME')
+    add('--task', "what is learned (default: the preset's task, or balance)", choices=names(TASKS))
+    add('--preset', "how it is learned (default: the task's preset, or coached)", choices=names(LEARNERS))
     add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
     add('--sharing', f'what counts of the two moments (default: {default.sharing})', choices=WAYS)
     add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '
-        f'{default.episodes})', type=int)
-    add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float)
-    add('--test-episodes', f'of the policy alone, at the end (default: {default.test_episodes})', type=int)
-    add('--robot', "the robot: a name, or the path of a robot's file (default: as the parameter file has it; panda)")
-    add('--seed', f'of ball starts, learner and simulated tutor (default: {default.seed})', type=int)
-    add('--screen', 'show the lesson in the terminal; --no-screen: print a line an episode instead',
-        action=argparse.BooleanOptionalAction)
+        f'{default.episodes})', type=int, metavar='N')
+    add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float, metavar='MIN')
+    add('--test-episodes', 'test the policy alone in this many episodes at the end; 0: no test (default: '
+        f'{default.test_episodes})', type=int, metavar='N')
+    add('--robot', "the robot: a name, or the path of a robot's file (default: as the parameter file has it; panda)",
+        metavar='ROBOT')
+    add('--seed', f'seed of ball starts, learner and simulated tutor (default: {default.seed})', type=int, metavar='N')
+    add('--screen', 'show the lesson in the terminal; --no-screen: print a line an episode instead (default: '
+        '--screen)', action=argparse.BooleanOptionalAction)
     add('--blind', 'tell the person neither how the robot learns nor what came of it, as a study does',
         action='store_true')
-    add('--output', 'folder of the session (default: a new one below out/sessions)', type=Path)
+    add('--output', 'folder of the session (default: a new one below out/sessions)', type=Path, metavar='FOLDER')
     add('--overwrite', 'remove what an earlier session wrote in that folder, and nothing else', action='store_true')
-    add('--params-file', f'ROS parameters of the nodes; what it does not name is as in {DEFAULTS.name} of this package',
-        type=Path)
+    add('--params-file', f'ROS parameters of the nodes; what it does not name is as in our own (default: '
+        f'{DEFAULTS.name} of shared_control_bringup)', type=Path, metavar='FILE')
     parser.add_argument(
         '--resume', type=Path, metavar='FOLDER',
         help='go on with an earlier session: its learner, its parameters, its folder, and its settings unless other '
         'options change them; all may be given but --task, --preset, --physics, --robot, --seed, --output, --overwrite '
-        'and --params-file')
+        'and --params-file (default: begin a new session)')
 
 
 def given_settings(args: argparse.Namespace) -> dict[str, Any]:

@@ -14,8 +14,8 @@ import pytest
 from shared_control_bringup.graph import ALL_NODES, overrides
 from shared_control_bringup.parameters import DEFAULTS, load
 from shared_control_bringup.settings import TUTORS, Settings
+from shared_control_ros.declarations import declared_parameters
 from shared_control_ros.processes import node_module
-from shared_control_testing.parameters import declared_parameters
 
 PACKAGE = Path(__file__).parents[1]
 PACKAGES = PACKAGE.parent

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from shared_control.command_line import add_json_option, add_parser
 from shared_control.control.sharing import WAYS
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
@@ -10,47 +11,52 @@ from shared_control.teaching.tutors import TUTOR_NAMES
 
 def add_train(commands: argparse._SubParsersAction) -> None:
     """Add ``train`` to the command line."""
-    parser = commands.add_parser(
-        'train', help='teach a policy in this process, by a simulated tutor or by nobody',
-        description='Teaches a policy headless and as fast as the machine can, with a simulated tutor or none; after '
+    parser = add_parser(
+        commands, 'train', _train, summary='teach a policy in this process, by a simulated tutor or by nobody',
+        description='Teach a policy headless and as fast as the machine can, with a simulated tutor or none; after '
         'each episode the policy is tested alone. The folder gets policy.safetensors, episodes.csv, run.json and '
-        'TensorBoard logs.')
-    parser.add_argument('--preset', choices=names(LEARNERS), default='', help='how it is learned (default: as the '
-                        'task is; coached)')
-    parser.add_argument('--task', choices=names(TASKS), default='', help='what is learned (default: what the preset '
-                        'was made for; balance)')
-    parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='(default: %(default)s)')
-    parser.add_argument('--tutor', choices=(*TUTOR_NAMES, 'none'), help='simulated tutor (default: expert; none for a '
-                        'preset that nobody teaches, and for a task that tutors do not know)')
-    parser.add_argument('--sharing', choices=WAYS, default='additive', help='what counts of the two moments (default: '
-                        '%(default)s)')
-    parser.add_argument('--human-only', action='store_true', help="the agent's moment is not applied (4.7)")
-    parser.add_argument('--seed', type=int, default=0, help='of everything random (default: 0)')
-    parser.add_argument('--episodes', type=int, default=20, help='at most so many (default: 20)')
+        'TensorBoard logs. The exit code is 1 when the policy was tested and is not skilled yet.',
+        examples=['shared-control train --profile low --until-skilled',
+                  'shared-control train --preset autonomous --episodes 30 --output out/alone',
+                  'shared-control train --resume out/train --episodes 40'])
+    parser.add_argument('--preset', choices=names(LEARNERS), default='',
+                        help="how it is learned (default: the task's preset, or coached)")
+    parser.add_argument('--task', choices=names(TASKS), default='',
+                        help="what is learned (default: the preset's task, or balance)")
+    parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='what the arm moves in')
+    parser.add_argument('--profile', choices=(*TUTOR_NAMES, 'none'), metavar='NAME',
+                        help='who the simulated tutor is, a profile or a family of which the seed draws one: '
+                        f'{", ".join(TUTOR_NAMES)}; or none (default: expert; none for a preset that nobody teaches, '
+                        'and for a task that tutors do not know)')
+    parser.add_argument('--sharing', choices=WAYS, default='additive', help='what counts of the two moments')
+    parser.add_argument('--human-only', action='store_true', help="do not apply the agent's moment")
+    parser.add_argument('--seed', type=int, default=0, metavar='N', help='seed of everything random')
+    parser.add_argument('--episodes', type=int, default=20, metavar='N', help='teach this many at the most')
     parser.add_argument('--until-skilled', action='store_true', help='stop when two tests in a row were passed')
-    parser.add_argument('--evaluate-every', type=int, default=1, metavar='N', help='test after every Nth episode; 0: '
-                        'never (default: 1)')
-    parser.add_argument('--output', type=Path, default=Path('out/train'), help='folder (default: out/train)')
+    parser.add_argument('--evaluate-every', type=int, default=1, metavar='N',
+                        help='test after every Nth episode; 0: never')
+    parser.add_argument('--output', type=Path, default=Path('out/train'), metavar='FOLDER', help='folder of the run')
     choice = parser.add_mutually_exclusive_group()
-    choice.add_argument('--resume', action='store_true', help='go on with the run in the folder')
-    choice.add_argument('--overwrite', action='store_true', help='begin anew in a folder that holds a run: remove '
-                        'what that run wrote, and nothing else')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the result there as well; - for the output')
-    parser.set_defaults(run=_train)
+    choice.add_argument('--resume', type=Path, metavar='FOLDER',
+                        help='go on with the run in this folder; give the options that it began with (default: '
+                        'begin a new run)')
+    choice.add_argument('--overwrite', action='store_true',
+                        help='remove what an earlier run wrote in the folder, and nothing else')
+    add_json_option(parser, 'the result')
 
 
 def add_tutors(commands: argparse._SubParsersAction) -> None:
     """Add ``tutors`` to the command line."""
-    parser = commands.add_parser(
-        'tutors', help='simulated tutors: families, sources, and how well each does the task alone',
-        description='Every individual has one episode with a robot that gives no moment of its own. All tutors are '
-        'simulated. Families marked "tuning" may be used to choose settings; results are of those held out.')
+    parser = add_parser(
+        commands, 'tutors', _tutors, summary='list simulated tutors, and how well each does the task alone',
+        description='Measure simulated tutors: every individual has one episode with a robot that gives no moment of '
+        'its own. Families marked "tuning" may be used to choose settings; results are of those held out.',
+        examples=['shared-control tutors', 'shared-control tutors expert low --individuals 24 --task plate'])
     parser.add_argument('tutors', nargs='*', metavar='NAME', default=list(TUTOR_NAMES),
-                        help=f'profiles and families (default: all): {", ".join(TUTOR_NAMES)}')
-    parser.add_argument('--individuals', type=int, default=12, help='of each (default: %(default)s)')
-    parser.add_argument('--task', choices=names(TASKS), default='balance')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the figures there as well')
-    parser.set_defaults(run=_tutors)
+                        help=f'profiles and families: {", ".join(TUTOR_NAMES)} (default: all)')
+    parser.add_argument('--individuals', type=int, default=12, metavar='N', help='individuals of each')
+    parser.add_argument('--task', choices=names(TASKS), default='balance', help='what they do')
+    add_json_option(parser, 'all figures')
 
 
 def _train(args: argparse.Namespace) -> int:

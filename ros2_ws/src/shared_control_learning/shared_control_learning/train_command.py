@@ -1,11 +1,11 @@
 """``shared-control train``: teach a policy in this process, without a graph."""
 
 import argparse
-import json
 import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from shared_control.command_line import prose, write_json
 from shared_control.control.sharing import Sharing
 from shared_control.run_folder import RunFolder
 from shared_control.teaching.picture import can_teach
@@ -23,6 +23,7 @@ from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, re
 def run(args: argparse.Namespace) -> int:
     """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
     chosen = preset_for(args.task, args.preset)
+    args.output = args.resume or args.output
     _check_options(args, chosen)
     folder = _claim_folder(args)
     try:
@@ -33,7 +34,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _train(args: argparse.Namespace, chosen: Preset) -> int:
     """Train, and print what came of it; the exit code."""
-    tutor = args.tutor or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
+    tutor = args.profile or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
     done = read_run(args.output).episodes if args.resume else 0
     try:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
@@ -43,7 +44,7 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
                 tensorboard=True, evaluate_every=args.evaluate_every, sharing=Sharing(args.sharing),
                 callbacks=_Bar(bar, args.output))
     except KeyboardInterrupt:
-        print(f'stopped; what was learned is in {args.output}: --resume goes on with it', file=sys.stderr)
+        print(f'stopped; go on with: shared-control train --resume {args.output}', file=sys.stderr)
         return 130
     _tell(result, tutor, args)
     return 0 if result.skilled is not None or not result.tests else 1
@@ -53,8 +54,8 @@ def _check_options(args: argparse.Namespace, chosen: Preset) -> None:
     """Refuse numbers and combinations that cannot be."""
     if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
         raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
-    if not chosen.taught and args.tutor not in (None, 'none'):
-        raise ValueError(f'the preset {chosen.name} has no tutor: leave --tutor out, or choose another preset')
+    if not chosen.taught and args.profile not in (None, 'none'):
+        raise ValueError(f'the preset {chosen.name} has no tutor: leave --profile out, or choose another preset')
 
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:
@@ -67,7 +68,7 @@ def _claim_folder(args: argparse.Namespace) -> RunFolder:
         folder.claim()
     else:
         if folder.holds_run and not args.overwrite:
-            raise TrainingError(f'{args.output} holds a run: --resume, --overwrite, or another --output')
+            raise TrainingError(f'{args.output} holds a run: --resume {args.output}, --overwrite, or another --output')
         folder.begin(args.overwrite)
     return folder
 
@@ -90,15 +91,9 @@ class _Bar(Callbacks):
 def _tell(result: TrainingRun, tutor: str, args: argparse.Namespace) -> None:
     summary = {**asdict(result), 'tutor': tutor, 'tutor_is_simulated': tutor != 'none', 'episodes': result.episodes,
                'first_pass': result.first_pass, 'skilled': result.skilled, 'folder': str(args.output)}
-    text = json.dumps(summary, indent=2) + '\n'
-    if args.json == Path('-'):
-        print(text, end='')
-        return
-    if args.json is not None:
-        args.json.parent.mkdir(parents=True, exist_ok=True)
-        args.json.write_text(text)
+    write_json(summary, args.json)
     found = 'was not tested' if not result.tests else (
         f'skilled after {result.skilled} episodes' if result.skilled is not None else
         f'not skilled after {result.episodes} episodes')
     print(f'{result.preset}, {"nobody" if tutor == "none" else f"simulated {tutor}"} at the keys, seed {args.seed}: '
-          f'{found}; {result.seconds:.0f} s. {args.output}')
+          f'{found}; {result.seconds:.0f} s. {args.output}', file=prose(args.json))

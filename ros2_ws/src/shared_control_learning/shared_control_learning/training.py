@@ -155,7 +155,7 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
     for name in ('preset', 'tutor', 'seed', 'human_only', 'physics', 'sharing'):
         if getattr(stored, name) != getattr(run, name):
             raise TrainingError(f'{folder} holds a run with {name} {getattr(stored, name)!r}, asked for '
-                                f'{getattr(run, name)!r}: name another folder')
+                                f'{getattr(run, name)!r}: ask for the same, or name another folder')
     learner = load_policy(folder / POLICY_NAME)
     # The policy is written last: an episode that it has not learned from is taught anew.
     stored.tests = [test for test in stored.tests if test[0] <= learner.episode]

@@ -1,14 +1,13 @@
 """``shared-control tutors``: the population of simulated tutors, and how well each does the task alone."""
 
 import argparse
-import json
 import sys
 from statistics import mean, median
 from typing import Any
 
 import numpy as np
+from shared_control.command_line import prose, write_json
 from shared_control.env import SharedControlEnv
-from shared_control.files import write_atomically
 from shared_control.plugins import TASKS, load
 from shared_control.rates import POLICY_PERIOD
 from shared_control.seeds import episode_seed
@@ -35,16 +34,17 @@ def run(args: argparse.Namespace) -> int:
     with tqdm(total=len(args.tutors) * args.individuals, unit='episode', disable=None, file=sys.stderr) as bar:
         for name in args.tutors:
             rows.append(alone(name, task, args.individuals, bar))
-    print(f'{"":14} {"use":9} {"succeed":>8} {"kept":>5} {"off, mm":>8} {"held":>5} {"presses":>8}  source')
+    output = prose(args.json)
+    print(f'{"":14} {"use":9} {"succeed":>8} {"kept":>5} {"off, mm":>8} {"held":>5} {"presses":>8}  source',
+          file=output)
     for row in rows:
         print(f'{row["tutor"]:14} {row["use"]:9} {row["success"]:>8.0%} {row["kept"]:>5.0%} '
               f'{1e3 * row["position_error"]:>8.0f} {row["held"]:>5.0%} {row["presses_a_minute"]:>8.0f}  '
-              f'{row["source"]}')
+              f'{row["source"]}', file=output)
     print(f'{args.individuals} individuals each, alone with an idle robot, one episode of {task.episode_seconds:g} s; '
-          'off: median |position error| over the last 3 s; presses: changes of the moment in a minute. Simulated.')
-    if args.json:
-        args.json.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(args.json, (json.dumps({'task': task.name, 'tutors': rows}, indent=2) + '\n').encode())
+          'off: median |position error| over the last 3 s; presses: changes of the moment in a minute. Simulated.',
+          file=output)
+    write_json({'task': task.name, 'tutors': rows}, args.json)
     return 0
 
 

@@ -67,7 +67,7 @@ def test_a_run_keeps_its_physics_and_goes_on_in_it(tmp_path, monkeypatch, capsys
     new = ('--task', 'balance', '--episodes', 1, '--evaluate-every', 0, '--output', tmp_path, '--physics', 'mujoco')
     assert command(monkeypatch, *new) == 0
     assert read_run(tmp_path).physics == 'mujoco'
-    assert command(monkeypatch, *new[:-2], '--resume') == 2
+    assert command(monkeypatch, *new[:-4], '--resume', tmp_path) == 2
     assert "physics 'mujoco', asked for 'bullet'" in capsys.readouterr().err
 
 
@@ -114,8 +114,8 @@ def test_command_trains_goes_on_and_tells(tmp_path, monkeypatch, capsys):
     assert command(monkeypatch, '--episodes', 1, '--evaluate-every', 0, '--output', folder, '--json', result) == 0
     assert json.loads(result.read_text())['tutor'] == 'expert'
     assert command(monkeypatch, '--output', folder) == 2
-    assert '--resume, --overwrite, or another --output' in capsys.readouterr().err
-    assert command(monkeypatch, '--episodes', 2, '--evaluate-every', 0, '--output', folder, '--resume') == 0
+    assert f'--resume {folder}, --overwrite, or another --output' in capsys.readouterr().err
+    assert command(monkeypatch, '--episodes', 2, '--evaluate-every', 0, '--resume', folder) == 0
     assert read_run(folder).episodes == 2
 
 
@@ -131,8 +131,8 @@ def test_overwriting_removes_what_a_run_writes_and_nothing_else(tmp_path, monkey
         patch.setattr('shared_control_learning.train_command.train', lambda *_, **__: pytest.fail('two writers'))
         other = RunFolder(tmp_path, 'run', (), ())
         other.claim()
-        for choice in ('--overwrite', '--resume'):
-            assert command(patch, *short, choice) == 2
+        for choice in (['--overwrite'], ['--resume', tmp_path]):
+            assert command(patch, *short, *choice) == 2
             assert 'in use by another run' in capsys.readouterr().err
         other.release()
     assert (tmp_path / 'run.json').read_text() == written
@@ -156,9 +156,9 @@ def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(('arguments', 'message'), [
-    (('--preset', 'autonomous', '--tutor', 'low'), 'autonomous has no tutor'),
+    (('--preset', 'autonomous', '--profile', 'low'), 'autonomous has no tutor'),
     (('--episodes', '0'), 'at least 1'),
-    (('--resume',), 'there is no run'),
+    (('--resume', '.'), 'there is no run'),
 ])
 def test_command_refuses(arguments, message, tmp_path, monkeypatch, capsys):
     assert command(monkeypatch, '--output', tmp_path / 'run', *arguments) == 2

@@ -3,20 +3,27 @@
 import argparse
 from pathlib import Path
 
+from shared_control.command_line import add_parser
+
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``recover`` to the ``shared-control`` command."""
-    parser = commands.add_parser('recover', help='finish the bag of a killed recorder', description=__doc__)
-    parser.add_argument('bag', type=Path, help="the bag's folder")
-    parser.set_defaults(run=run)
+    parser = add_parser(
+        commands, 'recover', run, summary='finish the bag of a killed recorder',
+        description='Finish the bag that a killed recorder left, that of a session or of ros2 bag record. Nothing that '
+                    'was recorded is lost; a bag that is whole is left as it is.',
+        examples=['shared-control recover out/demo'])
+    parser.add_argument('session', type=Path, metavar='SESSION', help="a session's folder, or its bag's folder")
 
 
 def run(args: argparse.Namespace) -> int:
     """Recover a bag; the exit code."""
     from .bag import recover  # late: `--help` need not wait for what reads bags
-    recovered = recover(args.bag)
+    from .bag.files import find_bag
+    bag = find_bag(args.session)
+    recovered = recover(bag)
     for file in recovered:
         print(file)
     if not recovered:
-        print(f'{args.bag}: every file is whole')
+        print(f'{bag}: every file is whole')
     return 0

@@ -4,21 +4,28 @@ import argparse
 import sys
 from pathlib import Path
 
+from shared_control.command_line import add_parser
+
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``report`` to the ``shared-control`` command."""
-    parser = commands.add_parser(
-        'report', help='the report of a study or of a bag', description=__doc__)
-    parser.add_argument('source', type=Path, help="a study's folder, a session's bag folder, or a single MCAP file")
-    parser.add_argument('--output', type=Path, default=None,
-                        help="new folder for a bag's report (default: beside it), or for a study's "
-                             '(default: report/ in its folder)')
-    parser.set_defaults(run=run)
+    parser = add_parser(
+        commands, 'report', run, summary='write the report of a session or of a study',
+        description='Write the report of a study, or of a session from its bag alone: one page, its figures and '
+                    'numbers beside it.',
+        examples=['shared-control report out/demo', 'shared-control report out/studies/quick',
+                  'shared-control report somebody_elses_bag/ --output out/theirs'])
+    parser.add_argument('source', type=Path, metavar='SESSION_OR_STUDY',
+                        help="a session's folder, its bag's folder, or an MCAP file; or a study's folder")
+    parser.add_argument('--output', type=Path, default=None, metavar='FOLDER',
+                        help="new folder for a session's report, any for a study's (default: SESSION_report beside "
+                             'it; STUDY/report)')
 
 
 def run(args: argparse.Namespace) -> int:
     """Write a report; the exit code."""
     # Imported late: pinocchio and matplotlib take seconds, which `--help` need not wait for.
+    from .bag.files import find_bag
     from .study.folder import StudyFolder
     if StudyFolder.is_at(args.source):
         from .study_report.report import write_study_report
@@ -26,9 +33,9 @@ def run(args: argparse.Namespace) -> int:
     else:
         from .bag.task import session_record
         from .session.bag_report import write_bag_report
-        page = write_bag_report(args.source, args.output or args.source.absolute().with_name(
-            f'{args.source.stem}_report'))
-        if not session_record(args.source):
+        bag = find_bag(args.source)
+        page = write_bag_report(bag, args.output or args.source.absolute().with_name(f'{args.source.stem}_report'))
+        if not session_record(bag):
             print('note: this bag has no record of the session (`ros2 bag record` and `convert` keep none): preset, '
                   'test of the policy and restarts are unknown, the tutor is guessed, the task is taken to be balance '
                   "unless a session's settings.json lies beside the bag", file=sys.stderr)

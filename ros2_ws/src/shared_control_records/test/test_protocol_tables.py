@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
+from shared_control.command_line import write_json
 from shared_control.tasks.balance import BALANCE
 from shared_control_learning.evaluation.result import ProtocolResult
 from shared_control_learning.evaluation.statistics import curve, episode_figures, mean_and_sem, policy_figures
@@ -15,7 +16,7 @@ from shared_control_learning.presets import COACHED
 from shared_control_records.evaluation.command import add_command
 from shared_control_records.evaluation.figures import plots
 from shared_control_records.evaluation.policies import load_policies
-from shared_control_records.evaluation.tables import text_table, write_csv, write_json
+from shared_control_records.evaluation.tables import as_json, text_table, write_csv
 
 STEPS = 500
 
@@ -72,7 +73,7 @@ def test_files_hold_every_sample_once(tmp_path):
     assert set(tracks[tracks.policy == 'b'].groupby('episode').size()) == {STEPS, 100}
     means = pd.read_csv(tmp_path / 'randomized_mean.csv')
     assert means.position_error_mean.iloc[-1] == pytest.approx(np.mean([0.015, 0.03]))
-    write_json(results, tmp_path / 'new' / 'r.json', seed=3)
+    write_json({'seed': 3, **as_json(results)}, tmp_path / 'new' / 'r.json')
     content = json.loads((tmp_path / 'new' / 'r.json').read_text())
     test = content['tests']['randomized']
     assert content['seed'] == 3 and test['over_policies']['count'] == 2
@@ -119,8 +120,8 @@ def evaluate(*arguments):
 
 
 def test_the_command_tests_a_policy(session, capsys):
-    assert evaluate(session / 's', '--episodes', 1, '--physics', 'mujoco', '--json', session / 'r.json',
-                    '--out', session / 'out') == 0
+    assert evaluate(session / 's', '--test-episodes', 1, '--physics', 'mujoco', '--json', session / 'r.json',
+                    '--output', session / 'out') == 0
     assert 'randomized' in capsys.readouterr().out
     assert json.loads((session / 'r.json').read_text())['tests']['randomized']['over_policies']['sem'] is None
     assert (session / 'out' / 'fig16_randomized_position_error.svg').exists()

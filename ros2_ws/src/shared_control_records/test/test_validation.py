@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from shared_control.command_line import write_json
 from shared_control.control.references import cosine_reference, cosine_velocity
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import panda
@@ -126,7 +127,7 @@ def test_table_and_json(tmp_path, runs, model, checks, compliances):
     assert validation.passed
     assert 'help at every frequency' in validation.table()
     assert 'ok   m_x: 0.286 0.000, predicted by J^T W: 0.287 0.000' in validation.table()
-    validation.write_json(tmp_path / 'new' / 'v.json')
+    write_json(validation.as_json(), tmp_path / 'new' / 'v.json')
     content = json.loads((tmp_path / 'new' / 'v.json').read_text())
     assert content['passed'] and len(content['tracking']) == 12
     assert max(check['difference'] for check in content['checks']) < BOUND

@@ -25,7 +25,7 @@ def view(monkeypatch, tmp_path):
 
     def view(bag):
         file = tmp_path / 'session.rrd'
-        monkeypatch.setattr('sys.argv', ['shared-control', 'view', str(bag), '--save', str(file)])
+        monkeypatch.setattr('sys.argv', ['shared-control', 'view', str(bag), '--output', str(file)])
         assert main() == 0
         found = {}
         for chunk in RrdReader(str(file)).stream().to_chunks():
@@ -78,7 +78,7 @@ def test_a_killed_bag_is_shown_when_it_is_finished(own, tmp_path, view, monkeypa
     bag = rosbag2.convert(own, tmp_path / 'other')
     path, = bag.glob('*.mcap')
     path.write_bytes(path.read_bytes()[:path.stat().st_size * 2 // 3])
-    monkeypatch.setattr('sys.argv', ['shared-control', 'view', str(bag), '--save', str(tmp_path / 'x.rrd')])
+    monkeypatch.setattr('sys.argv', ['shared-control', 'view', str(bag), '--output', str(tmp_path / 'x.rrd')])
     assert main() == 2
     assert 'shared-control recover' in capsys.readouterr().err
     recover(bag)

@@ -4,6 +4,7 @@ from rclpy.node import Node
 from shared_control.plugins import TASKS, load, names
 from shared_control.tasks.task import Task
 
+from .declarations import TASK
 from .parameters import declare
 
 
@@ -17,5 +18,5 @@ def declare_task(node: Node, description: str) -> Task:
     Raises:
         ParameterError: there is no such task.
     """
-    task: Task = load(TASKS, declare(node, 'task', 'balance', description, choices=names(TASKS)))()
+    task: Task = load(TASKS, declare(node, 'task', TASK, description, choices=names(TASKS)))()
     return task

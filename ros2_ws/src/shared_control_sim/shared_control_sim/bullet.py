@@ -5,13 +5,16 @@ from tempfile import NamedTemporaryFile
 from xml.etree import ElementTree
 
 import numpy as np
-import pybullet
 from shared_control.robot.model import GRAVITY
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
 from shared_control.robot.tray import carrying
 from shared_control.scene import Ball, Scene
+from shared_control.streams import muted
 from shared_control.tasks.balance import BALANCE
+
+with muted():  # it prints when it was built
+    import pybullet
 
 _POSITION, _VELOCITY = itemgetter(0), itemgetter(1)
 """Parts of the state of a joint as PyBullet gives it."""

@@ -6,6 +6,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shared_control.command_line import add_parser
 from shared_control_ros.host_and_port import host_and_port
 
 if TYPE_CHECKING:
@@ -18,14 +19,15 @@ FRAME_RATE = 40.0
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``replay`` to the ``shared-control`` command."""
-    parser = commands.add_parser(
-        'replay', help='play a recorded session in the browser', description=__doc__,
-        formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument('folder', type=Path, metavar='FOLDER', help='of a session, or a bag')
+    parser = add_parser(
+        commands, 'replay', run, summary='play a recorded session in the browser',
+        description='Play a recorded session on the page, with a time slider and speed. Needs no ROS.',
+        examples=['shared-control replay out/demo', 'shared-control replay out/demo --page 127.0.0.1:8200'])
+    parser.add_argument('session', type=Path, metavar='SESSION',
+                        help="a session's folder, its bag's folder, or an MCAP file")
     parser.add_argument('--page', type=host_and_port, default='127.0.0.1:8089', metavar='HOST:PORT',
                         help='where the page is served; another host than loopback opens it to the network, '
                         'with a token')
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -33,6 +35,7 @@ def run(args: argparse.Namespace) -> int:
     # Imported late: `--help` and the other commands need neither web server nor bag reader.
     import asyncio
 
+    from shared_control_records.bag.files import find_bag
     from shared_control_records.bag.reader import read_bag
     from shared_control_records.session.folder import SessionFolder
 
@@ -40,14 +43,13 @@ def run(args: argparse.Namespace) -> int:
     from .replay_desk import ReplayDesk
     from .server import PageServer
     from .showing import Showing
-    is_bag = args.folder.is_file() or (args.folder / 'metadata.yaml').is_file()
-    folder = None if is_bag else SessionFolder.open(args.folder)
-    path = args.folder if folder is None else folder.bag
+    path = find_bag(args.session)
+    folder = None if path == args.session else SessionFolder.open(args.session)
     print(f'Reading {path} ...', flush=True)
     host, port = args.page
     bag = read_bag(path)
     recording = Recording(bag)
-    showing = Showing(title=_title(args.folder, folder, bag), marks=tuple(recording.marks()), tested=_tested(folder))
+    showing = Showing(title=_title(args.session, folder, bag), marks=tuple(recording.marks()), tested=_tested(folder))
     server = PageServer(ReplayDesk(recording, showing), host, port, FRAME_RATE)
     print(f'\n    Watch here: {server.address}\n\nCtrl-C ends the replay.', flush=True)
     with suppress(KeyboardInterrupt):  # that is how a replay ends

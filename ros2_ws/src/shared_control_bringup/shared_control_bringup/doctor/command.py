@@ -3,6 +3,8 @@
 import argparse
 from collections.abc import Iterator
 
+from shared_control.command_line import add_parser
+
 from . import machine
 from .finding import Finding, Level
 from .middleware import middleware
@@ -11,12 +13,12 @@ from .variables import variables
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``doctor`` to argparse's subparsers."""
-    parser = commands.add_parser(
-        'doctor', help='what of this machine a session depends on, and what to mend',
+    add_parser(
+        commands, 'doctor', run, summary='check this machine, and print what to mend',
         description='Check this machine: versions, variables, cores, real-time limits, shared memory, browser, '
                     'middleware and domain. Prints a line for each and the remedy where something is wrong; changes '
-                    'nothing. The exit code is 1 when a session would not run.')
-    parser.set_defaults(run=run)
+                    'nothing. The exit code is 1 when a session would not run.',
+        examples=['shared-control doctor'])
 
 
 def findings() -> Iterator[Finding]:

@@ -18,6 +18,15 @@ class BagError(OSError):
     """A bag cannot be written or read; the message names the file and the reason."""
 
 
+def find_bag(path: Path) -> Path:
+    """The bag that a person means by ``path``: itself, a rosbag2 folder or an MCAP file; or that in a session's folder.
+
+    It may not exist.
+    """
+    is_session = (path / 'bag').is_dir() or (path / 'settings.json').is_file()
+    return path / 'bag' if is_session and not any(path.glob('*.mcap')) else path
+
+
 def bag_files(bag: Path) -> list[Path]:
     """The ``<name>_<number>.mcap`` files of a bag in the order in which they were recorded."""
     return sorted((path for path in bag.glob('*.mcap') if _NUMBER.search(path.name)), key=_number)

@@ -1,6 +1,5 @@
 """What the tests found, to read and as files."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -57,12 +56,6 @@ def as_json(results: Results) -> dict[str, Any]:
                          for name, result, row in zip(results, tests, rows, strict=True)},
             'over_policies': {'count': len(rows), 'mean': mean, 'sem': sem if len(rows) > 1 else None}}
     return content
-
-
-def write_json(results: Results, path: Path, **more: Any) -> None:
-    """:func:`as_json`, and ``more``, in a file."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_atomically(path, (json.dumps({**more, **as_json(results)}, indent=2, allow_nan=False) + '\n').encode())
 
 
 def write_csv(results: Results, folder: Path) -> None:

@@ -4,21 +4,28 @@ import argparse
 import os
 from pathlib import Path
 
+from shared_control.command_line import add_parser
+
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``study`` to the ``shared-control`` command."""
-    parser = commands.add_parser(
-        'study', help='participants x conditions, from one YAML file', description=__doc__,
-        epilog='Stopped, by whatever, it goes on where it was when the same command is given again.')
-    parser.add_argument('plan', type=Path, help='YAML file; studies/ has examples')
-    parser.add_argument('--output', type=Path, default=None, help='folder of the study; default: out/studies/NAME')
-    parser.add_argument('--workers', type=int, default=len(os.sched_getaffinity(0)),
-                        help='processes on this machine (default: %(default)s)')
+    parser = add_parser(
+        commands, 'study', run, summary='run a study: participants x conditions, from one YAML file',
+        description='Run a study as its plan says: teach and test policies of simulated participants and those that '
+                    'nobody teaches, or lead a real participant through their part. Stopped, by whatever, it goes on '
+                    'where it was when the same command is given again.',
+        examples=['shared-control study studies/quick.yaml',
+                  'shared-control study studies/people.yaml --participant 3',
+                  'shared-control report out/studies/quick'])
+    parser.add_argument('plan', type=Path, metavar='PLAN', help='YAML file; studies/ has examples')
+    parser.add_argument('--output', type=Path, default=None, metavar='FOLDER',
+                        help='folder of the study (default: out/studies/NAME, as the plan is called)')
+    parser.add_argument('--workers', type=int, default=len(os.sched_getaffinity(0)), metavar='N',
+                        help='processes on this machine (default: one a core)')
     parser.add_argument('--ray', metavar='ADDRESS', default=None,
-                        help='do the runs on this Ray cluster instead ("auto": the one running here)')
-    parser.add_argument('--participant', type=int, metavar='NUMBER', default=None,
-                        help='lead this real participant through what is left to do')
-    parser.set_defaults(run=run)
+                        help='do the runs on this Ray cluster, auto: the one running here (default: on this machine)')
+    parser.add_argument('--participant', type=int, metavar='N', default=None,
+                        help='lead this real participant through what is left to do (default: what needs nobody)')
 
 
 def run(args: argparse.Namespace) -> int:

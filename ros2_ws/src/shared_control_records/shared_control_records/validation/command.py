@@ -1,22 +1,23 @@
-"""``shared-control validate``: the thesis' validation of kinematics, dynamics and control (2.2-2.4), redone.
-
-The tray follows cosine references, with the high and low gains of Table 3, with and without the non-linear terms; the
-model is compared with kinematics and dynamics written down by hand. The exit code is 1 when something disagrees.
-"""
+"""``shared-control validate``: the thesis' validation of kinematics, dynamics and control (2.2-2.4), redone."""
 
 import argparse
 from pathlib import Path
 
+from shared_control.command_line import add_json_option, add_parser, prose, write_json
+
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``validate`` to the ``shared-control`` command."""
-    parser = commands.add_parser(
-        'validate', help='model and controller against the thesis (2.4)', description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--out', type=Path, metavar='DIR', default=Path('out/validation'),
-                        help='folder for the figures, PNG and SVG (default: %(default)s)')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write all figures of the tables there')
-    parser.set_defaults(run=run)
+    parser = add_parser(
+        commands, 'validate', run, summary='check model and controller against the thesis',
+        description='Redo the validation of kinematics, dynamics and control of the thesis (sections 2.2 to 2.4): the '
+                    'tray follows cosine references, with the high and low gains of Table 3, with and without the '
+                    'non-linear terms; the model is compared with kinematics and dynamics written down by hand. The '
+                    'exit code is 1 when something disagrees.',
+        examples=['shared-control validate', 'shared-control validate --output out/mine --json out/mine/figures.json'])
+    parser.add_argument('--output', type=Path, metavar='FOLDER', default=Path('out/validation'),
+                        help='folder for the figures (PNG, SVG, PDF)')
+    add_json_option(parser, 'all figures of the tables')
 
 
 def run(args: argparse.Namespace) -> int:
@@ -26,13 +27,11 @@ def run(args: argparse.Namespace) -> int:
 
     from .figures import plots
     from .run import validate
-    args.out.mkdir(parents=True, exist_ok=True)
+    args.output.mkdir(parents=True, exist_ok=True)
     validation = validate()
-    print(validation.table())
+    print(validation.table(), file=prose(args.json))
     for plot in tqdm(list(plots(validation.runs)), unit='figure', desc='figures', disable=None):
-        plot.save(args.out)
-    print(f'Figures in {args.out}')
-    if args.json:
-        validation.write_json(args.json)
-        print(f'Written to {args.json}')
+        plot.save(args.output)
+    print(f'Figures are in {args.output}', file=prose(args.json))
+    write_json(validation.as_json(), args.json)
     return 0 if validation.passed else 1

@@ -1,12 +1,9 @@
 """All of the validation, its table and its JSON."""
 
-import json
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 from shared_control.control.references import FREQUENCIES, cosine_reference
-from shared_control.files import write_atomically
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.model import RobotModel
 from shared_control_sim.bullet import BulletWorld
@@ -67,9 +64,9 @@ class Validation:
                      else f'  FAIL: with the low gains the non-linear terms do not help at {self.worse_with_terms} Hz.')
         return '\n'.join(lines)
 
-    def write_json(self, path: Path) -> None:
+    def as_json(self) -> dict[str, Any]:
         """All figures of the table."""
-        content: dict[str, Any] = {
+        return {
             'passed': self.passed,
             'checks': [{**asdict(check), 'bound': BOUND, 'passed': check.passed} for check in self.checks],
             'home': asdict(self.home),
@@ -79,8 +76,6 @@ class Validation:
                 'rms_m_s': run.rms, 'rms_settled_m_s': run.rms_settled, 'max_distance_m': float(run.distance.max()),
                 'manipulability_min': float(run.manipulability.min()),
                 'manipulability_max': float(run.manipulability.max())} for run in self.runs]}
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically(path, (json.dumps(content, indent=2) + '\n').encode())
 
 
 def validate() -> Validation:

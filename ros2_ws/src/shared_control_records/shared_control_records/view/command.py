@@ -3,14 +3,19 @@
 import argparse
 from pathlib import Path
 
+from shared_control.command_line import add_parser
+
 
 def add_command(commands: argparse._SubParsersAction) -> None:
     """Add ``view`` to the ``shared-control`` command."""
-    parser = commands.add_parser('view', help='open a recorded session in Rerun', description=__doc__)
-    parser.add_argument('bag', type=Path, help="a session's folder, its bag's folder, or a single MCAP file")
-    parser.add_argument('--save', type=Path, metavar='FILE.rrd', default=None,
-                        help='write the recording there (`rerun FILE.rrd` opens it) instead of opening the viewer')
-    parser.set_defaults(run=run)
+    parser = add_parser(
+        commands, 'view', run, summary='open a recorded session in Rerun',
+        description='Open a recorded session in Rerun: arm, ball, moments, keys, phases and charts on one time line.',
+        examples=['shared-control view out/demo', 'shared-control view out/demo --output out/demo.rrd'])
+    parser.add_argument('session', type=Path, metavar='SESSION',
+                        help="a session's folder, its bag's folder, or an MCAP file")
+    parser.add_argument('--output', type=Path, metavar='FILE', default=None,
+                        help='write the recording there (FILE.rrd) instead of opening the viewer (default: open it)')
 
 
 def run(args: argparse.Namespace) -> int:
@@ -20,19 +25,18 @@ def run(args: argparse.Namespace) -> int:
         import rerun as rr
     except ModuleNotFoundError as error:
         raise ValueError('view needs Rerun: pip install "shared-control[view]"') from error
+    from ..bag.files import find_bag
     from ..bag.reader import read_bag
-    from ..session.folder import SessionFolder
     from .recording import blueprint, log_bag
-    is_bag = args.bag.is_file() or (args.bag / 'metadata.yaml').is_file() or not SessionFolder(args.bag).bag.is_dir()
-    path = args.bag if is_bag else SessionFolder(args.bag).bag
+    path = find_bag(args.session)
     bag = read_bag(path)
     recording = rr.RecordingStream('shared_control', recording_id=str(path.absolute()))
-    if args.save is None:
+    if args.output is None:
         recording.spawn(default_blueprint=blueprint(bag))
     else:
-        recording.save(args.save, default_blueprint=blueprint(bag))
+        recording.save(args.output, default_blueprint=blueprint(bag))
     log_bag(bag, recording)
     recording.flush()
-    if args.save is not None:
-        print(args.save)
+    if args.output is not None:
+        print(args.output)
     return 0
