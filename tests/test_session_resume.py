@@ -5,10 +5,11 @@ import signal
 from collections import defaultdict
 
 import numpy as np
+import pytest
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from shared_control import contract
-from shared_control_learning.episode_table import read_rows
+from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import read_description
 from shared_control_records.session.bag_report import write_bag_report
 
@@ -55,11 +56,14 @@ def test_a_session_is_interrupted_resumed_and_reported(start_session, unpaced, t
     assert session.process.returncode == 0, said
     assert 'simulated' in said and 'robot alone' in said
     assert episodes_taught(folder) == 5
-    assert [row['episode'] for row in read_rows(folder / 'learner' / 'episodes.csv')][:5] == ['1', '2', '3', '4', '5']
+    rows = read_rows(folder / 'learner' / 'episodes.csv')
+    assert [row['episode'] for row in rows if row['phase'] == 'teach'] == ['1', '2', '3', '4', '5']
     assert read_description(folder / 'learner' / 'policy.safetensors')['episode'] == 5
     for name in ('learner/policy.json', 'parameters.yaml', 'settings.json', 'test.json', 'report.html', 'picture.png'):
         assert (folder / name).stat().st_size > 0
     summary = summary_of(folder)
+    assert summary['episodes_broken_off'] == sum(row['phase'] == BROKEN_OFF for row in rows) <= 1
+    assert summary['taught_s'] == pytest.approx(sum(float(row['seconds']) for row in rows if row['phase'] != 'test'))
     assert summary['simulated_tutor'] is True and summary['key_presses'] > 0
     assert summary['autonomous_episodes'] == 1 and summary['control_rate_hz'] > 0
     files = sorted((folder / 'bag').glob('*.mcap'))

@@ -38,6 +38,8 @@ from .training_topics import TrainingTopics
 
 STEPS_PER_PROGRESS = 5
 """Progress is told at 10 Hz."""
+STEPS_PER_NOTE = 50
+"""How far an episode has come is kept once a second: what a killed agent was taught is known but for that."""
 TRY_AGAIN_SECONDS = 0.5
 """Between a void episode and the next try, s."""
 
@@ -128,7 +130,10 @@ class PpoAgentNode(Callbacks):
                             f'{stored!r}: name that one, or another output folder')
                 self.node.get_logger().info(
                     f'going on after episode {learner.episode} of {self._policy_path} (seed {learner.seed})')
-            self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)
+            try:
+                self._table = EpisodeTable(folder / TABLE_NAME, learner.episode, live=True)
+            except ValueError as error:
+                raise ParameterError(f"parameter 'output': {error}") from error
         if resume and not learner.episode:
             raise ParameterError(f"parameter 'resume' is true, but there is no {POLICY_NAME} in output ({output!r})")
         return learner
@@ -149,6 +154,7 @@ class PpoAgentNode(Callbacks):
                 self._test()
             self._training.enter('done')
         except _Stopped:
+            self._break_off()
             self.node.get_logger().info(f'stopped; {self._learner.episode} episodes are learned and kept')
 
     def _wait(self) -> None:
@@ -247,6 +253,8 @@ class PpoAgentNode(Callbacks):
         if len(episode) % STEPS_PER_PROGRESS == 0:
             length = self._episode_seconds if episode.phase == 'teach' else self._learner.task.test_seconds
             self._training.progress(length - len(episode) * POLICY_PERIOD, episode.human_share)
+        if self._table is not None and episode.phase == 'teach' and len(episode) % STEPS_PER_NOTE == 0:
+            self._table.under_way(episode)
 
     def learning_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
@@ -260,6 +268,7 @@ class PpoAgentNode(Callbacks):
         if self._table is not None and self._policy_path is not None:
             self._table.append(episode)  # before the learner: a row too many is dropped on resuming
             save_policy(self._learner, self._policy_path)
+        self._episode = None
         self._seconds_left -= len(episode) * POLICY_PERIOD + episode.learn_seconds
         self.node.get_logger().info(
             f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '
@@ -276,13 +285,20 @@ class PpoAgentNode(Callbacks):
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""
         self.node.get_logger().warning(f'the episode is void: {error}')
-        if self._episode is not None and self._episode.phase == 'teach':
-            self._seconds_left -= len(self._episode) * POLICY_PERIOD  # a person has taught for as long
+        self._break_off()
         again = time.monotonic() + TRY_AGAIN_SECONDS  # whatever is the matter may last
         while time.monotonic() < again:
             time.sleep(0.1)
             self._attend()
         self._wait()
+
+    def _break_off(self) -> None:
+        """What is under way is not learned from, but a person has taught for as long."""
+        episode, self._episode = self._episode, None
+        if episode is not None and episode.phase == 'teach':
+            self._seconds_left -= len(episode) * POLICY_PERIOD
+            if self._table is not None:
+                self._table.break_off(episode)
 
     def close(self) -> None:
         """Leave no moment behind, and see to it that the last words arrive."""

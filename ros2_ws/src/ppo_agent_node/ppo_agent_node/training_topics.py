@@ -2,10 +2,14 @@
 
 from typing import Any
 
+from rclpy.duration import Duration
 from rclpy.node import Node
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
 from std_msgs.msg import Float64, Int32, String
+
+FLUSH_SECONDS = 2.0
+"""A listener that stands still keeps nobody longer than this, s."""
 
 
 class TrainingTopics:
@@ -51,6 +55,6 @@ class TrainingTopics:
         self._success.publish(Float64(data=rate))
 
     def flush(self) -> None:
-        """Wait until everybody has the last words."""
+        """Wait until everybody has the last words, or somebody does not take them."""
         for publisher in (self._phase_publisher, self._return, self._success):
-            publisher.wait_for_all_acked()
+            publisher.wait_for_all_acked(Duration(seconds=FLUSH_SECONDS))

@@ -3,7 +3,7 @@
 import signal
 
 import pytest
-from shared_control_learning.episode_table import read_rows
+from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import load_policy, read_description
 from shared_control_ros import contract
 from std_srvs.srv import SetBool, Trigger
@@ -78,11 +78,14 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert agent.log().count('the episode is void') == 1
     assert any(r.status[0].name == '/ppo_agent_node' for r in reports)
     assert read_description(output / 'policy.safetensors')['episode'] == 1
+    void, taught = read_rows(output / 'episodes.csv')
+    assert (void['episode'], void['phase'], taught['phase']) == ('1', BROKEN_OFF, 'teach')
+    assert 0.5 <= float(void['seconds']) < 5.0 == float(taught['seconds'])
 
     left.clear()
     killed = start_node('ppo_agent_node', output=output, episode_seconds=5.0)
     killed.wait_for_log('going on after episode 1', 40.0)
-    observer.spin(lambda: left and left[-1].data < 4.5, 40.0)
+    observer.spin(lambda: left and left[-1].data < 3.9, 40.0)
     killed.stop(signal.SIGKILL)
 
     wrenches = observer.listen(contract.AGENT_WRENCH)
@@ -92,7 +95,10 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert resumed.stop(signal.SIGTERM) == 0
     observer.spin(lambda: wrenches[-1].wrench.torque.y == 0.0, what='a last moment of zero')
     assert 'stopped; 1 episodes are learned and kept' in resumed.log()
-    assert [r['episode'] for r in read_rows(output / 'episodes.csv')] == ['1']
+    rows = read_rows(output / 'episodes.csv')
+    assert [(r['episode'], r['phase']) for r in rows] == [
+        ('1', BROKEN_OFF), ('1', 'teach'), ('2', BROKEN_OFF), ('2', BROKEN_OFF)]
+    assert [float(r['seconds']) >= at_least for r, at_least in zip(rows[2:], (1.0, 0.5), strict=True)] == [True, True]
 
 
 @pytest.mark.parametrize(('parameters', 'words'), [

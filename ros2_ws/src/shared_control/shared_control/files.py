@@ -17,15 +17,19 @@ def state_folder() -> Path:
     return Path(os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')) / 'shared_control'
 
 
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write ``content`` to ``path`` as a whole or not at all, whenever the process or the machine stops."""
+def write_atomically(path: Path, content: bytes, synced: bool = True) -> None:
+    """Write ``content`` to ``path`` as a whole or not at all, whenever the process or the machine stops.
+
+    ``synced=False`` does not wait for the disk, and so holds for the process alone.
+    """
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.name}.')
     temporary = Path(name)
     try:
         with os.fdopen(handle, 'wb') as file:
             file.write(content)
             file.flush()
-            os.fsync(file.fileno())
+            if synced:
+                os.fsync(file.fileno())
         with suppress(PermissionError):  # FAT and some network file systems have no modes
             temporary.chmod(0o644)
         temporary.replace(path)

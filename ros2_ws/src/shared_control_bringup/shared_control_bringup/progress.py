@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from shared_control_learning.episode_table import read_rows
+from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 
 
 class EpisodePrinter:
@@ -21,9 +21,13 @@ class EpisodePrinter:
 
     def poll(self) -> None:
         """Tell what is new."""
-        for row in read_rows(self._path)[self._told:]:
+        rows = read_rows(self._path)
+        self._told = min(self._told, len(rows))  # an agent that begins leaves out the rows of an earlier test
+        for row in rows[self._told:]:
             self._told += 1
             self._say(
+                f'teach {int(row["episode"]):3d}: broken off after {float(row["seconds"]):.1f} s'
+                if row['phase'] == BROKEN_OFF else
                 f'{row["phase"]:>5} {int(row["episode"]):3d}: return {float(row["return"]):8.1f}, '
                 f'human share {float(row["human_share"]):4.0%}'
                 + (', the ball fell' if int(row['fallen']) else

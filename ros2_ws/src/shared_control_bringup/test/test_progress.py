@@ -18,6 +18,17 @@ def test_tells_each_finished_episode_once(tmp_path):
     assert len(said) == 2 and '4.0 mm' in said[1] and '25%' in said[1]
 
 
+def test_an_episode_that_was_broken_off_and_rows_that_are_gone(tmp_path):
+    path, said = tmp_path / 'episodes.csv', []
+    path.write_text(HEAD + '1,test,1,0,0,0.1\n2,test,1,0,0,0.1\n')
+    printer = EpisodePrinter(path, said.append)
+    path.write_text('')
+    printer.poll()
+    path.write_text('episode,phase,seconds\n1,broken off,4.25\n')
+    printer.poll()
+    assert said == ['teach   1: broken off after 4.2 s']
+
+
 def test_what_an_earlier_run_wrote_is_not_told_again(tmp_path):
     path, said = tmp_path / 'episodes.csv', []
     path.write_text(HEAD + '1,teach,1,0,0,0.1\n')

@@ -3,6 +3,7 @@
 import csv
 import io
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from shared_control.files import write_atomically
@@ -11,6 +12,10 @@ from .episode import Episode
 
 TABLE_NAME = 'episodes.csv'
 """Name of the file in a learner's folder."""
+UNFINISHED_NAME = 'unfinished.csv'
+"""Beside it: the episode that is under way, as far as it has come."""
+BROKEN_OFF = 'broken off'
+"""Phase of an episode that the learner has not learned from: repeated, stopped, or cut short by a fault."""
 
 
 class EpisodeTable:
@@ -18,36 +23,75 @@ class EpisodeTable:
 
     Args:
         path: of the file.
-        taught: episodes that the learner has learned from. Rows of later ones, left by a run that was killed before
-            it saved its learner, are dropped, and so are those of an earlier test and a half-written last line.
+        taught: episodes that the learner has learned from. Rows of an earlier test and a half-written last line are
+            dropped; for rows of later episodes, left by a run that was killed before it saved its learner, see:
+        live: whether episodes take somebody's time: those that were broken off are kept then. They are dropped where
+            they can be done again as they were.
+
+    Raises:
+        ValueError: there is a file that is no such table; the message names it.
     """
 
-    def __init__(self, path: Path, taught: int = 0):
-        self._path = path
-        rows = [row for row in read_rows(path) if row['phase'] == 'teach' and int(row['episode']) <= taught]
+    def __init__(self, path: Path, taught: int = 0, live: bool = False):
+        self._path, self._unfinished = path, path.with_name(UNFINISHED_NAME)
+        before = read_rows(path)
+        rows = [row for row in before if row['phase'] == 'teach' and int(row['episode']) <= taught]
+        if live:
+            rows = [row if row['phase'] == BROKEN_OFF or int(row['episode']) <= taught else {**row, 'phase': BROKEN_OFF}
+                    for row in before if row['phase'] in ('teach', BROKEN_OFF)]
+            rows += [row for row in read_rows(self._unfinished) if [row] != before[-1:] and not any(
+                other['phase'] == 'teach' and other['episode'] == row['episode'] for other in before)]
         self._has_header = bool(rows)
-        self.taught_seconds = sum(float(row['seconds']) + float(row['learn_seconds']) for row in rows)
+        self.taught_seconds = sum(float(row['seconds']) + float(row.get('learn_seconds', 0.0)) for row in rows)
         """How long the learner was taught before, s: its episodes by the robot's time, and the time of learning."""
         write_atomically(path, (_csv([list(rows[0])]) + _csv([list(row.values()) for row in rows])).encode()
                          if rows else b'')
+        self._unfinished.unlink(missing_ok=True)
 
     def append(self, episode: Episode) -> None:
         """The row of an episode that has ended."""
-        row = episode.row()
+        self._append(episode.row())
+
+    def break_off(self, episode: Episode) -> None:
+        """The row of an episode that will not be learned from; none when it has not begun."""
+        if len(episode):
+            self._append({**episode.row(), 'phase': BROKEN_OFF})
+
+    def under_way(self, episode: Episode) -> None:
+        """Keep how far an episode has come, for the case that this process does not see its end."""
+        row = {**episode.row(), 'phase': BROKEN_OFF}
+        with suppress(OSError):  # a full disk is an error at the episode's end
+            write_atomically(self._unfinished, _csv([list(row), list(row.values())]).encode(), synced=False)
+
+    def _append(self, row: dict[str, float | int | str]) -> None:
         lines = _csv([list(row.values())] if self._has_header else [list(row), list(row.values())])
         with self._path.open('a', newline='') as file:
             file.write(lines)
             file.flush()
             os.fsync(file.fileno())
         self._has_header = True
+        self._unfinished.unlink(missing_ok=True)
 
 
 def read_rows(path: Path) -> list[dict[str, str]]:
-    """The complete rows by column name; none when there is no file."""
+    """The complete rows by column name; none when there is no file.
+
+    Raises:
+        ValueError: it is no table of episodes; the message names it.
+    """
     if not path.exists():
         return []
-    with path.open(newline='') as file:
-        return list(csv.DictReader(line for line in file if line.endswith('\n')))
+    try:
+        with path.open(newline='') as file:
+            rows = list(csv.DictReader(line for line in file if line.endswith('\n')))
+        for row in rows:
+            int(row['episode'])
+            for column, value in row.items():
+                if column != 'phase':
+                    float(value)  # a row that is too short has None
+    except (ValueError, KeyError, TypeError, csv.Error) as error:
+        raise ValueError(f'{path} is no table of episodes: {error!r}') from error
+    return rows
 
 
 def _csv(rows: list[list]) -> str:

@@ -7,7 +7,7 @@ from shared_control import contract
 from shared_control.keys import Key
 from shared_control.robot.spec_file import panda
 from shared_control_records.bag import fast_decode as bulk
-from shared_control_records.bag.ball_tracks import episode_tracks
+from shared_control_records.bag.ball_tracks import broken_off, episode_tracks
 from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_records.bag.ticks import digests
@@ -163,7 +163,12 @@ def test_tracks_of_the_finished_episodes(tmp_path):
     lessons = [made.lesson(50, seed=seed) for seed in range(3)]
     recording = made.record(lessons)
     recording.drop(contract.EPISODE_RETURN, 1, 1)  # the second episode was broken off
-    tracks = episode_tracks(read_bag(recording.write(tmp_path / 'bag')))
+    for tenth in range(30):
+        at = made.START_NS + tenth * 100 * made.MS
+        recording.add(contract.HUMAN_SHARE, at, made.message(contract.HUMAN_SHARE.type, data=0.5))
+    bag = read_bag(recording.write(tmp_path / 'bag'))
+    assert broken_off(bag) == [(2, pytest.approx(0.9, abs=0.02))]
+    tracks = episode_tracks(bag)
     assert [(track.number, track.phase) for track in tracks] == [(1, 'teach'), (3, 'teach')]
     error = lessons[2].position_error  # one a period of the policy; the last sample, 10 ms later, too
     np.testing.assert_allclose(tracks[1].position_error, [*error, error[-1]], atol=1e-12)

@@ -63,6 +63,28 @@ def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
     return tracks
 
 
+def broken_off(bag: Bag) -> list[tuple[int, float]]:
+    """Number and duration, s of the robot's time, of each episode of teaching in a bag that did not come to its end.
+
+    It lasted until the learner told of its progress (10 Hz) for the last time.
+    """
+    starts, ends = bag.training[contract.EPISODE], bag.training[contract.EPISODE_RETURN]
+    progress = bag.training[contract.HUMAN_SHARE].received_ns
+    found = []
+    for index, (start_ns, number) in enumerate(zip(starts.received_ns, starts.values, strict=True)):
+        next_ns = starts.received_ns[index + 1] if index + 1 < len(starts.received_ns) else bag.end_ns
+        within = progress[(progress > start_ns) & (progress < next_ns)]
+        if not len(within) or ((ends.received_ns > start_ns) & (ends.received_ns <= next_ns)).any():
+            continue
+        first, last = np.searchsorted(bag.ball.received_ns, (start_ns, within[-1]))
+        if _phase(bag, int(within[0])) != 'teach' or last - first < 2:
+            continue
+        stamps = bag.ball.stamp_ns[first + _after_drop(bag.ball.position[first:last]):last]
+        steps = np.diff(stamps)  # the simulator may have been started anew within it
+        found.append((int(number), float(steps[steps > 0].sum()) * 1e-9))
+    return found
+
+
 def _thinned(stamps_ns: np.ndarray) -> np.ndarray:
     """Indices of the samples that a learner may have seen: the first of each period of the policy, and the last."""
     return np.unique(np.append(

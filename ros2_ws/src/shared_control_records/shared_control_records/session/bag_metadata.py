@@ -11,8 +11,9 @@ from typing import Any
 import yaml
 from shared_control import contract
 from shared_control.files import write_atomically
+from shared_control_learning.episode_table import BROKEN_OFF
 
-from ..bag.ball_tracks import EpisodeTrack, episode_tracks
+from ..bag.ball_tracks import EpisodeTrack, broken_off, episode_tracks
 from ..bag.reader import Bag
 from ..bag.task import session_record
 from .episodes import EpisodeRow, write_episodes
@@ -66,7 +67,9 @@ def unpack(bag: Bag, folder: SessionFolder) -> None:
         tutor = next((TUTOR_OF_KEYS[source] for source in sources if source in TUTOR_OF_KEYS), None)
         write_atomically(folder.settings, json.dumps({'tutor': tutor}).encode())
     if _key(folder, folder.episodes) not in packed:
-        write_episodes([_row(bag, track) for track in episode_tracks(bag)], folder.episodes)
+        unlearned = [EpisodeRow(number, BROKEN_OFF, round(seconds, 3), None, None, None)
+                     for number, seconds in broken_off(bag)]
+        write_episodes([*(_row(bag, track) for track in episode_tracks(bag)), *unlearned], folder.episodes)
 
 
 def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:

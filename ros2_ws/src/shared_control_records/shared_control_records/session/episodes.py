@@ -1,8 +1,11 @@
 """The agent's table of episodes."""
 
 import csv
+import io
 from dataclasses import dataclass
 from pathlib import Path
+
+from shared_control.files import write_atomically
 
 
 @dataclass(frozen=True)
@@ -11,7 +14,7 @@ class EpisodeRow:
 
     number: int
     phase: str
-    """``teach`` or ``test``"""
+    """``teach``, ``test``, or ``broken off``"""
     seconds: float | None
     episode_return: float | None
     fallen: bool | None
@@ -43,11 +46,12 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
 
 def write_episodes(rows: list[EpisodeRow], path: Path) -> None:
     """Write a table that :func:`read_episodes` reads; what is None stays empty."""
-    with path.open('w', newline='') as file:
-        writer = csv.writer(file)
-        writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share'))
-        writer.writerows((row.number, row.phase, row.seconds, row.episode_return,
-                          None if row.fallen is None else int(row.fallen), row.human_share) for row in rows)
+    text = io.StringIO(newline='')
+    writer = csv.writer(text)
+    writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share'))
+    writer.writerows((row.number, row.phase, row.seconds, row.episode_return,
+                      None if row.fallen is None else int(row.fallen), row.human_share) for row in rows)
+    write_atomically(path, text.getvalue().encode())
 
 
 def _number(row: dict[str, str], column: str) -> float | None:

@@ -90,6 +90,8 @@ def _done(summary: Summary) -> str:
     episodes = 'episode' if summary.episodes_taught == 1 else 'episodes'
     text = (f'The robot learned the task {summary.task} in {_number(summary.episodes_taught, "d")} {episodes} (preset '
             f'{summary.preset or "unknown"}). ')
+    if summary.episodes_broken_off:
+        text += f'Episodes broken off, from which it has not learned: {summary.episodes_broken_off}. '
     if summary.tutor == 'none':
         text += 'Nobody pressed keys.'
     else:

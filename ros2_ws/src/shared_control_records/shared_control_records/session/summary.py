@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from shared_control.tasks.task import Task
+from shared_control_learning.episode_table import BROKEN_OFF
 
 from ..bag.checks import check_bag
 from ..bag.reader import Bag
@@ -27,6 +28,10 @@ class Summary:
     duration_s: float | None
     """From the first to the last message of the bag, by the clock on the wall."""
     episodes_taught: int | None
+    episodes_broken_off: int | None
+    """Episodes of teaching that the robot has not learned from: repeated, stopped, or cut short by a fault."""
+    taught_s: float | None
+    """How long the robot was taught by its own time, episodes broken off included."""
     key_presses: int | None
     autonomous_success: int | None
     """Episodes of the final test that succeeded."""
@@ -68,11 +73,14 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
     tutor = _tutors(settings)
     timing = timing_of(bag) if bag else None
     taught = [row for row in rows if row.phase == 'teach']
+    broken_off = [row for row in rows if row.phase == BROKEN_OFF]
     return Summary(
         task=task.name, preset=settings.get('preset'), tutor=tutor,
         simulated_tutor=None if tutor is None else 'simulated' in tutor,
         duration_s=round((bag.end_ns - bag.start_ns) * 1e-9, 3) if bag else None,
         episodes_taught=len(taught) if folder.episodes.exists() else None,
+        episodes_broken_off=len(broken_off) if folder.episodes.exists() else None,
+        taught_s=round(sum(row.seconds or 0.0 for row in (*taught, *broken_off)), 3) if rows else None,
         key_presses=len(bag.presses) if bag else None,
         autonomous_success=test.successes if test else None,
         autonomous_episodes=len(test.episodes) if test else None,

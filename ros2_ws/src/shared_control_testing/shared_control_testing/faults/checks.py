@@ -10,8 +10,9 @@ from shared_control import contract
 from shared_control.control.moments import FADE_TIME
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
-from shared_control_learning.episode_table import read_rows
+from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import PolicyFileError, load_policy
+from shared_control_records.bag.ball_tracks import broken_off
 from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.reader import Bag, BagReadError, read_bag
 from shared_control_records.bag.recorded import Wrenches
@@ -19,6 +20,8 @@ from shared_control_records.session.folder import SessionFolder
 
 TICK_NS = 1_000_000
 EPSILON = 1e-9
+UNSEEN_SECONDS = 1.5
+"""What an agent that was killed may not have kept of an episode, and the time that its progress is told late."""
 LOST_NS = 1_000_000_000
 """How much of what was sent a killed recorder may lose."""
 
@@ -111,12 +114,28 @@ def _learner(folder: SessionFolder) -> Iterator[str]:
 
 
 def _table(folder: SessionFolder, bag: Bag, lost_rows: bool) -> Iterator[str]:
-    """Every episode in the table is in the bag, unless the recorder was away."""
+    """Every episode in the table is in the bag and the other way round, unless the recorder was away."""
+    if lost_rows:
+        return
     returns = bag.training[contract.EPISODE_RETURN].values
+    seconds: dict[int, list[float]] = {}
     for row in read_rows(folder.episodes):
         value = float(row['return'])
-        if not np.isclose(returns, value, rtol=1e-4, atol=1e-4).any() and not lost_rows:
+        if np.isclose(returns, value, rtol=1e-4, atol=1e-4).any():
+            continue
+        if row['phase'] == BROKEN_OFF:
+            seconds.setdefault(int(row['episode']), []).append(float(row['seconds']))
+        else:
             yield f'table: the return {value} of episode {row["episode"]} is not in the bag'
+    for number, recorded in broken_off(bag):
+        if recorded > UNSEEN_SECONDS:
+            of_table = seconds.get(number, [])
+            nearest = min(of_table, key=lambda kept: abs(kept - recorded), default=0.0)
+            if abs(nearest - recorded) > UNSEEN_SECONDS:
+                yield (f'table: episode {number} was broken off after {recorded:.2f} s by the bag, by the table after '
+                       f'{of_table}')
+            else:
+                of_table.remove(nearest)
 
 
 def _report(folder: SessionFolder) -> Iterator[str]:
