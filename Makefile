@@ -5,9 +5,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 SRC := ros2_ws/src
 MINUTES := 60
+CHECK_SCHEMA := $(BIN)/check-jsonschema --quiet --builtin-schema
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test coverage lint docs wheel bench faults soak pictures weight count colcon clean
+.PHONY: help setup demo session test coverage lint lint-github docs wheel bench faults soak pictures weight count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
@@ -16,7 +17,7 @@ help:
 	@echo 'make coverage all tests, and which lines they ran; ARGS=PATH for a part of them'
 	@echo 'make docs     the documentation as a site (out/docs/index.html)'
 	@echo 'make wheel    sdist and wheel (dist/), each installed and tried in an empty environment'
-	@echo 'make lint     ruff, mypy, and who may import whom'
+	@echo 'make lint     ruff, mypy, who may import whom, the linters of ROS, workflows and templates'
 	@echo 'make bench    measurements (out/bench.json)'
 	@echo 'make faults   faults at random moments of live sessions, and what must hold in spite of them (out/faults.json)'
 	@echo 'make soak     a long session, and whether anything grows; MINUTES=60 (out/soak.json)'
@@ -66,6 +67,17 @@ lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
+	tools/ament.sh flake8 pep257
+	$(MAKE) --no-print-directory lint-github
+
+lint-github: setup
+	$(BIN)/zizmor --offline --quiet .github
+	$(CHECK_SCHEMA) vendor.github-workflows .github/workflows/*.yml
+	$(CHECK_SCHEMA) vendor.github-issue-forms .github/ISSUE_TEMPLATE/fault.yml .github/ISSUE_TEMPLATE/idea.yml
+	$(CHECK_SCHEMA) vendor.github-issue-config .github/ISSUE_TEMPLATE/config.yml
+	$(CHECK_SCHEMA) vendor.dependabot .github/dependabot.yml
+	$(CHECK_SCHEMA) vendor.citation-file-format CITATION.cff
+	$(CHECK_SCHEMA) vendor.compose-spec docker/compose.yaml
 
 count: setup
 	$(BIN)/python tools/count.py $(ARGS)

@@ -9,6 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from catkin_pkg.package import parse_package
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = sorted(path.parent for path in (ROOT / 'ros2_ws' / 'src').glob('*/package.xml'))
@@ -141,3 +142,9 @@ def test_no_docstring_begins_with_of():
     """Half a sentence, which a reader has to complete from the name above it."""
     sources = [path for package in PACKAGES for path in package.rglob('*.py')]
     assert not [path for path in sources if re.search(r'^\s*"""Of ', path.read_text(), re.MULTILINE)]
+
+
+def test_package_xml_is_as_the_build_tools_want_it(package):
+    warnings = []
+    parse_package(package, warnings=warnings).validate(warnings=warnings)
+    assert not warnings

@@ -82,10 +82,10 @@ class TestTheDetourOnThePage:
         browser.type(Keys.SPACE)
 
     def test_bar_goal_and_both_views_are_there(self, browser):
-        parts = browser.script('''
+        parts = browser.script("""
             const box = (selector) => { const b = document.querySelector(selector).getBoundingClientRect();
                 return [b.left, b.top, b.right, b.bottom]; };
-            return [box("svg .plate"), box("svg .obstacle"), box("svg .goal"), box("[data-part=scene]")];''')
+            return [box("svg .plate"), box("svg .obstacle"), box("svg .goal"), box("[data-part=scene]")];""")
         plate, bar, goal, scene = parts
         for inner in (bar, goal):
             assert plate[0] - 2 <= inner[0] and inner[2] <= plate[2] + 2

@@ -11,7 +11,7 @@ NODES = ('panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'sim_tutor_nod
 
 
 def test_any_node_may_be_killed_in_mid_episode(start_session, unpaced, tmp_path, wait_until, summary_of,
-                                                episodes_taught):
+                                               episodes_taught):
     folder = tmp_path / 'session'
     session = start_session('--tutor', 'sim', '--episodes', 5, '--test-episodes', 0, '--params-file', unpaced,
                             '--output', folder)

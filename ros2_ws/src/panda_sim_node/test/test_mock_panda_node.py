@@ -19,8 +19,8 @@ def test_leaves_cleanly_and_has_told_its_mode(start_node, observer, physics):
     assert 'Traceback' not in node.log()
 
 
-@pytest.mark.parametrize(('parameters', 'said'), [({'drop_rate': 2.0}, "'drop_rate'"), ({'pace': 0.0}, "'pace'"),
-                                                    ({'physics': 'flat'}, 'bullet, mujoco')])
+@pytest.mark.parametrize(('parameters', 'said'), [
+    ({'drop_rate': 2.0}, "'drop_rate'"), ({'pace': 0.0}, "'pace'"), ({'physics': 'flat'}, 'bullet, mujoco')])
 def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('mock_panda_node', **parameters)
     assert node.process.wait(20) == 2

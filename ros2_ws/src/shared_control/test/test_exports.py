@@ -55,4 +55,4 @@ def test_nothing_is_loaded_before_it_is_asked_for():
     ('shared_control_learning', 'preset', 'learn')])
 def test_what_is_missing_says_how_to_install_it(module, name, extra):
     said = said_by(WITHOUT.format(module=module, name=name))
-    assert f"needs the module {module!r}, which is not installed: pip install \"shared-control[{extra}]\"" in said
+    assert f'needs the module {module!r}, which is not installed: pip install "shared-control[{extra}]"' in said

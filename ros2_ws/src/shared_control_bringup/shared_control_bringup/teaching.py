@@ -94,4 +94,3 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     if error is not None:
         print(f'shared-control: {error}', file=sys.stderr)
     return end, supervisor.restarts, next((node for node in nodes if node.name == stays), None)
-

@@ -15,7 +15,7 @@ from shared_control_records.export.lerobot import action_rows
 def python(tmp_path):
     """A Python that answers with the sum of what was seen, as M_x and ten times that as M_y."""
     script = tmp_path / 'python'
-    script.write_text(f'''#!{sys.executable}
+    script.write_text(f"""#!{sys.executable}
 import json, sys
 if not sys.argv[2].endswith("good"):
     sys.exit("ValueError: no policy of that kind")
@@ -23,7 +23,7 @@ print("ready", flush=True)
 for line in sys.stdin:
     total = sum(json.loads(line))
     print(json.dumps([total, 10 * total]), flush=True)
-''')
+""")
     script.chmod(0o755)
     for name in ('good', 'bad'):
         (tmp_path / name).mkdir()

@@ -93,8 +93,8 @@ def test_a_killed_recording_of_rosbag2_is_finished(own, tmp_path, chunks, monkey
 
 
 def test_a_bag_of_several_robots_names_them(own, tmp_path):
-    bag = rosbag2.convert(own, tmp_path / 'one', rename=lambda topic: {'/joint_states': '/a/joint_states',
-                                                                      '/ball': '/b/joint_states'}.get(topic, topic))
+    bag = rosbag2.convert(own, tmp_path / 'one', rename=lambda topic: {
+        '/joint_states': '/a/joint_states', '/ball': '/b/joint_states'}.get(topic, topic))
     with pytest.raises(BagReadError, match=r'several robots \(/a, /b\)'):
         read_bag(bag)
 

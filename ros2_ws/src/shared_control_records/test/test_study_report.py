@@ -128,7 +128,7 @@ def test_what_is_unfinished_or_damaged_is_left_out_and_said(plan, tmp_path, monk
     study = load_study(folder)
     assert len(study.runs) == 11
     assert len(study.problems) == 2 and str(damaged) in study.problems[0]
-    assert str(wrong) in study.problems[1] and "seconds: Input should be a valid number" in study.problems[1]
+    assert str(wrong) in study.problems[1] and 'seconds: Input should be a valid number' in study.problems[1]
 
     empty = StudyFolder(tmp_path / 'empty')
     empty.begin(plan)

@@ -58,7 +58,7 @@ INTERFACES = {
     'sim_tutor_node': Interface(
         publishes=(contract.KEYS, contract.DIAGNOSTICS),
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.EPISODE,
-               contract.PHASE)),
+                    contract.PHASE)),
     'teach_page_node': Interface(
         publishes=(contract.KEYS,),
         subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),

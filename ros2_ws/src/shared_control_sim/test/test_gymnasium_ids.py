@@ -45,7 +45,7 @@ def test_wrong_arguments_are_named(arguments, said):
 
 @pytest.mark.parametrize('imports', ['shared_control, gymnasium', 'gymnasium, shared_control'])
 def test_it_is_registered_in_either_order_and_loads_no_simulator(imports):
-    code = (f"import {imports}, sys; print({BALANCE_ID!r} in gymnasium.registry, "
+    code = (f'import {imports}, sys; print({BALANCE_ID!r} in gymnasium.registry, '
             "bool({'pybullet', 'mujoco'} & set(sys.modules)))")
     assert subprocess.check_output([sys.executable, '-c', code], text=True).split() == ['True', 'False']
 

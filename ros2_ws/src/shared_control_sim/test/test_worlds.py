@@ -14,6 +14,7 @@ def world(physics):
     yield world
     world.close()
 
+
 FIVE = np.array([5.0])
 
 

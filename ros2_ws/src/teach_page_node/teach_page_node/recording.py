@@ -42,7 +42,7 @@ class Recording:
 
     @property
     def length(self) -> float:
-        """s"""
+        """How long it is, s."""
         return float(self._elapsed[-1])
 
     def picture(self, seconds: float) -> Picture:

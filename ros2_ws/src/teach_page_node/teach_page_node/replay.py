@@ -71,4 +71,3 @@ def _tested(folder: 'SessionFolder | None') -> str:
     from shared_control_records.session.final_test import load_test
     test = None if folder is None else load_test(folder.test)
     return '' if test is None else f'{test.successes} of {len(test.episodes)} tests'
-

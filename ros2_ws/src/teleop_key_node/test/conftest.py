@@ -90,8 +90,9 @@ class Graph:
 
     def wait_for_node(self, meanwhile: Callable[[], None]) -> None:
         """Until the node publishes and hears."""
-        self.until(lambda: meanwhile() or (self.listen() == 0.0 and self._keys.get_subscription_count() >= 2
-                                        and self._phase.get_subscription_count() >= 1), 'the node')
+        self.until(lambda: meanwhile() or (
+            self.listen() == 0.0 and self._keys.get_subscription_count() >= 2
+            and self._phase.get_subscription_count() >= 1), 'the node')
 
     def close(self) -> None:
         self.node.destroy_node()

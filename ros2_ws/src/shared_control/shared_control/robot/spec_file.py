@@ -130,7 +130,7 @@ class _File:
         children = {child.get('link') for child in robot.iterfind('joint/child')}
         if base_frame in children:
             root = ', '.join(map(repr, links - children))
-            raise self._error('base_frame', f"{base_frame!r} hangs on another link of {urdf}, whose root is {root}")
+            raise self._error('base_frame', f'{base_frame!r} hangs on another link of {urdf}, whose root is {root}')
 
     def _numbers(self, key: str, value: Any, count: int) -> np.ndarray:
         """Finite numbers, one a joint."""

@@ -113,8 +113,7 @@ class SimulatedTutor(SimulatedPerson):
         return Picture(picture.position_error + position, picture.velocity + velocity, picture.tilt + tilt)
 
     def _wanted(self, seen: _Memory, lead: float, elapsed: float, held: np.ndarray) -> np.ndarray:
-        """M_h that makes up for what the robot lacks, in whole keystrokes, (k,), N m; ``lead`` s after what was
-        seen."""
+        """M_h for what the robot lacks, in whole keystrokes, (k,), N m; ``lead`` s after what was seen."""
         error, velocity, tilt = seen.picture.position_error, seen.picture.velocity, seen.picture.tilt
         robot_tilt = tilt - TILT_OF_MOMENT * seen.held
         ideal_then = self._ideal_tilt(error, velocity)

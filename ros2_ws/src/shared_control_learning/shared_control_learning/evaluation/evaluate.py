@@ -36,7 +36,7 @@ class Evaluation:
 
     @property
     def success_rate(self) -> float:
-        """0..1"""
+        """Share of episodes that succeeded, 0 to 1."""
         return self.successes / len(self.episodes)
 
     @property

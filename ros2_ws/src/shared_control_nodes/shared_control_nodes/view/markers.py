@@ -75,4 +75,3 @@ def _marker(namespace: str, number: int, kind: int, colour: ColorRGBA) -> Marker
 def _point(position: np.ndarray) -> Point:
     x, y, z = position.tolist()
     return Point(x=x, y=y, z=z)
-

@@ -26,8 +26,9 @@ from .result import RunResult, describe, is_done, save_result
 
 
 def run_job(folder: StudyFolder, name: str) -> None:
-    """Do the run called ``name`` and keep its result; one that was killed goes on where it was. All that is random
-    follows from the participant's seed, so it makes no difference where and when it runs.
+    """Do the run called ``name`` and keep its result; one that was killed goes on where it was.
+
+    All that is random follows from the participant's seed, so it makes no difference where and when it runs.
 
     Raises:
         ValueError: there is no such run, or a file of it is damaged.

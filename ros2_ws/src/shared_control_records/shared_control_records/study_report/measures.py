@@ -38,8 +38,11 @@ class Study:
         return sorted((run for run in self.runs if run.condition == condition), key=lambda run: run.participant)
 
     def best(self, condition: str, count: int | None = BEST) -> list[RunResult]:
-        """The best runs of a condition, best first: least mean |position error| in the perturbation test, which lasts
-        30 s as the test does by which the thesis ranks (4.1). Without that test, by the last return. All when None."""
+        """The best runs of a condition, best first; all when ``count`` is None.
+
+        By least mean |position error| in the perturbation test, which lasts 30 s as the test does by which the thesis
+        ranks (4.1). Without that test, by the last return.
+        """
         return sorted(self.of(condition), key=_badness)[:count]
 
 

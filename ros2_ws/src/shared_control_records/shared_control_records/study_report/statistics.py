@@ -1,6 +1,8 @@
-"""Statistics of a study: few runs, skewed, some censored (Agarwal et al., 2021, "Deep RL at the edge of the statistical
-precipice"). Their package rliable gives the same numbers (docs/how_to/study.md), but drags in packages that
-do not go with today's pandas; what is needed of it stands here.
+"""Statistics of a study: few runs, skewed, some censored.
+
+After Agarwal et al., 2021, "Deep RL at the edge of the statistical precipice". Their package rliable gives the same
+numbers (docs/how_to/study.md), but drags in packages that do not go with today's pandas; what is needed of it
+stands here.
 
 Participants are resampled within their group (stratum): a study of two experts and eleven novices stays one.
 """
@@ -73,8 +75,10 @@ def beats(first: np.ndarray, second: np.ndarray, lower_is_better: bool) -> np.nd
 
 
 def sooner(first: 'Times', second: 'Times') -> np.ndarray:
-    """For :func:`improvement`: whether ``first`` was reached before ``second``, pair by pair. Where one was given up
-    before the other was reached, nobody knows: a tie."""
+    """For :func:`improvement`: whether ``first`` was reached before ``second``, pair by pair.
+
+    Where one was given up before the other was reached, nobody knows: a tie.
+    """
     known_first = first.reached & (first.episodes <= second.episodes)
     known_second = second.reached & (second.episodes <= first.episodes)
     return 0.5 + 0.5 * (known_first.astype(float) - known_second.astype(float))

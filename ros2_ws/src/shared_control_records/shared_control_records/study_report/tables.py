@@ -34,8 +34,10 @@ MEASURES = (
 
 
 def conditions_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
-    """A row a condition and measure: estimate and 95 % interval; the interquartile mean, but for episodes to skilled
-    the median of Kaplan and Meier."""
+    """A row a condition and measure: estimate and 95 % interval.
+
+    The interquartile mean, but for episodes to skilled the median of Kaplan and Meier.
+    """
     rows = []
     for condition in study.conditions:
         reached = times(study.of(condition))
@@ -53,8 +55,10 @@ def conditions_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def comparison_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
-    """A row for every two conditions and measure: the probability that a participant's run in the first is better
-    than theirs in the second, paired by participant and so by seed."""
+    """A row for every two conditions and measure: the probability that the first is better.
+
+    Than the second, for the same participant: runs are paired by participant and so by seed.
+    """
     rows = []
     for first, second in combinations(study.conditions, 2):
         one, other = ({run.participant: run for run in study.of(name)} for name in (first, second))

@@ -43,7 +43,7 @@ def _draw_reference(frequency: float, figure: Figure) -> None:
     axes = figure.subplots()
     seconds = np.linspace(0, SECONDS, 1000)
     axes.plot(seconds, cosine_velocity(seconds, frequency), color=GOOD)
-    axes.set(title=f'Reference of the tray\'s velocity along x, {frequency:g} Hz', xlabel='Time (s)',
+    axes.set(title=f"Reference of the tray's velocity along x, {frequency:g} Hz", xlabel='Time (s)',
              ylabel='Velocity (m/s)', ylim=(-0.34, 0.34), xlim=(0, SECONDS))
 
 

@@ -37,7 +37,7 @@ class PlateState:
 
     @property
     def velocity(self) -> float:
-        """Speed of the ball, m/s"""
+        """Speed of the ball, m/s."""
         return math.hypot(*self.ball_velocity)
 
 
