@@ -5,10 +5,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 SRC := ros2_ws/src
 MINUTES := 60
+RUNS := 50
 CHECK_SCHEMA := $(BIN)/check-jsonschema --quiet --builtin-schema
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test coverage lint lint-github docs wheel bench faults soak pictures weight count colcon clean
+.PHONY: help setup demo session test coverage lint lint-github docs wheel bench faults soak freeze flaky pictures weight \
+    count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
@@ -21,6 +23,8 @@ help:
 	@echo 'make bench    measurements (out/bench.json)'
 	@echo 'make faults   faults at random moments of live sessions, and what must hold in spite of them (out/faults.json)'
 	@echo 'make soak     a long session, and whether anything grows; MINUTES=60 (out/soak.json)'
+	@echo 'make freeze   a real-time loop beside a load, with the priorities that once froze it and with ours; MINUTES=60'
+	@echo 'make flaky    the tests that ever failed by chance, RUNS=50 times'
 	@echo 'make pictures the page in all its states, at five sizes (out/pictures)'
 	@echo 'make weight   what the controller alone installs (out/weight.json)'
 	@echo 'make count    the size of the code, and what is tied to one task or robot, at the first version and now'
@@ -96,6 +100,13 @@ faults: setup
 
 soak: setup
 	$(BIN)/python benchmarks/soak.py --minutes $(MINUTES)
+
+freeze: setup
+	$(BIN)/python benchmarks/freeze.py --minutes $(MINUTES)
+
+flaky: setup
+	@for run in $$(seq $(RUNS)); do echo "run $$run of $(RUNS)"; \
+	    $(BIN)/python -m pytest -q --maxfail=1 @tests/failed_by_chance.txt || exit 1; done
 
 colcon: setup
 	PYTHON=$(BIN)/python tools/colcon.sh $(ARGS)

@@ -4,10 +4,12 @@
     python benchmarks/faults.py --only 17                         # the fault of that number again, alone
 
 The tutor is simulated and the simulator unpaced. Faults are drawn by a seed: killed, stopped and slowed nodes;
-messages repeated, reordered, garbled; a disk that is full; an emergency stop with a restart of the controller; Ctrl-C
-and a resume. After each fault the learner must begin another phase or the session end in order; after each session its
-folder is checked: torques within limit and rate, no moment that nobody asked for within its time-out, the sum that of
-its parts, the bag readable by rosbags and mcap with at most 1 s lost, the policy loads, table and bag agree, a report.
+messages repeated, reordered, garbled; packets lost, repeated, reordered and garbled below DDS; the clock of the day set
+back and forward, with the robot's time or without; a disk that is full; an emergency stop with a restart of the
+controller; Ctrl-C and a resume. After each fault the learner must begin another phase or the session end in order;
+after each session its folder is checked: torques within limit and rate, no moment that nobody asked for within its
+time-out, the sum that of its parts, the bag readable by rosbags and mcap with at most 1 s lost, the policy loads, table
+and bag agree, a report.
 """
 
 import argparse

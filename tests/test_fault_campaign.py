@@ -12,7 +12,9 @@ from shared_control_testing.sessions import lesson, record, write_episodes
 
 FAULTS = [Fault(0, 'corrupt', 'human/target_wrench', 'teach', 0.1, 0.5, 3),
           Fault(1, 'stop', 'panda_sim_node', 'teach', 0.3, 0.5, 4),
-          Fault(2, 'kill', 'ppo_agent_node', 'teach', 0.3, 0.0, 5)]
+          Fault(2, 'kill', 'ppo_agent_node', 'teach', 0.3, 0.0, 5),
+          Fault(3, 'network', 'drop', 'teach', 0.1, 0.5, 6),
+          Fault(4, 'clock', 'back', 'teach', 0.3, 1.0, 7)]
 
 
 def test_faults_are_repeated_by_seed_and_number():

@@ -11,7 +11,7 @@ from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.policy_file import load_policy, read_description
-from shared_control_records.session.final_test import save_test
+from shared_control_records.session.final_test import save_test, sha256
 from shared_control_records.session.folder import SessionFolder
 from shared_control_records.session.summary import Summary
 from shared_control_sim.local_plant import LocalPlant
@@ -50,11 +50,13 @@ def test_policy(folder: SessionFolder, episodes: int, physics: str, attend: Call
     """
     attend()
     tell_page(folder, 'testing', tested=0, of=episodes)
+    tested = sha256(folder.policy)
     learner = load_policy(folder.policy)
     robot = load_robot(folder.ros_parameters('panda_sim_node').get('robot', 'panda'))
     env = SharedControlEnv(LocalPlant(learner.task, physics=physics, robot=robot), as_tested(learner.task))
     try:
-        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(folder, episodes, attend)), folder.test)
+        save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(folder, episodes, attend)), folder.test,
+                  tested)
     finally:
         env.close()
 

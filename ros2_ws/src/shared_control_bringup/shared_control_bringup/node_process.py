@@ -23,6 +23,8 @@ UNUSABLE = 2
 """Exit code of a node that cannot run with its parameters or files: starting it again would not help."""
 LOG_END = 16_384
 """Bytes of a log in which a warning is new enough to be of interest."""
+HELD = {'D': 'it waits for a disk', 'T': 'somebody has stopped it: SIGSTOP, Ctrl-Z', 't': 'a debugger holds it'}
+"""States of a process (proc(5)) in which it cannot help standing still."""
 _WARNING = re.compile(r'^\[(?:WARN|ERROR|FATAL)\] \[([\d.]+)\] \[[^\]]*\]: (.+)$', re.MULTILINE)
 
 
@@ -142,6 +144,23 @@ class NodeProcess:
         """Ask it to leave cleanly."""
         if self._process is not None and self.exit_code() is None:
             self._process.send_signal(signal.SIGINT)
+
+    def kill(self) -> None:
+        """End it by force."""
+        if self.exit_code() is None:
+            os.kill(self.pid, signal.SIGKILL)
+
+    def write_traceback(self) -> None:
+        """Have it write into its log what each of its threads is at (:func:`shared_control_ros.runner.run`)."""
+        if self.exit_code() is None:
+            os.kill(self.pid, signal.SIGUSR1)
+
+    def held_by(self) -> str:
+        """What keeps it from running, in words; empty: nothing does."""
+        try:
+            return HELD.get(Path(f'/proc/{self.pid}/stat').read_text().rpartition(')')[2].split()[0], '')
+        except (OSError, IndexError):
+            return ''
 
     def wait(self, seconds: float) -> None:
         """Wait for it to leave; end it by force when it does not."""

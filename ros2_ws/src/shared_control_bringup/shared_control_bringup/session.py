@@ -11,6 +11,7 @@ from typing import Any
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata
+from shared_control_records.session.final_test import sha256
 from shared_control_records.session.folder import SessionFolder
 
 from . import parameters as ros_parameters
@@ -125,11 +126,14 @@ def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: 
     folder.write_settings(replace(settings, taught=False).to_json())
     folder.ending.unlink(missing_ok=True)
     end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts, settings.blind)
-    times = [path.stat().st_mtime_ns for path in (folder.test, folder.policy) if path.exists()]
-    if times != sorted(times, reverse=True):
+    if folder.test.exists() and folder.policy.exists() and _policy_of_the_test(folder) != sha256(folder.policy):
         folder.test.unlink()  # the policy has learned since
     folder.write_settings(replace(settings, taught=end is End.DONE).to_json())
     return end, restarts + earlier_restarts, page_node
+
+
+def _policy_of_the_test(folder: SessionFolder) -> str | None:
+    return (folder.read_json(folder.test) or {}).get('policy')
 
 
 def _earlier_restarts(folder: SessionFolder) -> int:

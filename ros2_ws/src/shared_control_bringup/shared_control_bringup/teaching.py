@@ -5,6 +5,7 @@ import time
 from enum import Enum
 
 from shared_control_records.session.folder import SessionFolder
+from shared_control_ros.clock_steps import ClockSteps, in_words
 
 from . import parameters as ros_parameters
 from .graph import Role, named, nodes_of
@@ -61,7 +62,11 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     episodes = EpisodePrinter(folder.episodes, note if blind else say)
     waits = Waits(nodes, say)
 
+    clock_steps = ClockSteps()
+
     def attend() -> None:
+        if step := clock_steps.new():
+            say(in_words(step))
         waits.poll()
         interrupts.check()
 

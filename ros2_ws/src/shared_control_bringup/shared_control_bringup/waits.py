@@ -6,6 +6,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
+from shared_control_ros.watchdog import STANDSTILL
+
 from .node_process import NodeProcess
 
 SAY_AGAIN_AFTER = 15.0
@@ -13,6 +15,9 @@ SAY_AGAIN_AFTER = 15.0
 LONGEST = {'starting': 6.0, 'tick': 3.0, 'wait': 3.0, 'learn': 15.0, 'episode': 120.0, 'agent': 15.0}
 """What passes without a word, s: a start of a node, the time from tick to tick, from episode to episode, an update, an
 episode from end to end, and until the agent says what it does."""
+ENDED_AFTER = 30.0
+"""A node whose loop has stood still for this long is ended and started again, s. Each reports once a second on
+/diagnostics."""
 
 
 @dataclass(frozen=True)
@@ -21,6 +26,8 @@ class Seen:
 
     starting: tuple[str, ...] = ()
     """Nodes that have not said that they are ready for longer than they should."""
+    standing_still: tuple[tuple[str, str], ...] = ()
+    """Nodes whose loop stands still, and what is known of that."""
     phase: str | None = None
     """What the agent is at; None: it has said nothing yet."""
     phase_age: float = 0.0
@@ -40,12 +47,17 @@ class Wait:
     what: str
     nodes: tuple[str, ...]
     """Whose warnings may tell why."""
+    starts: bool = False
+    """Whether it is for nodes to start."""
 
 
 def wait_of(seen: Seen) -> Wait | None:
     """What the session waits for; None: it goes on."""
     if seen.starting:
-        return Wait(f'{" and ".join(seen.starting)} to start', seen.starting)
+        return Wait(f'{" and ".join(seen.starting)} to start', seen.starting, starts=True)
+    if seen.standing_still:
+        return Wait(' and '.join(f'{name}, whose loop stands still ({state}),' for name, state in seen.standing_still) +
+                    ' to go on', tuple(name for name, _ in seen.standing_still))
     if seen.phase is None:
         return Wait('ppo_agent_node to begin', ('ppo_agent_node',)) if seen.phase_age > LONGEST['agent'] else None
     if seen.phase == 'learn':
@@ -77,7 +89,12 @@ class Waits:
         self._graph: _Graph | None = None
         self._wait: Wait | None = None
         self._since = self._next_line = time.monotonic()
+        self._stands_still = False
         self._clock = ''
+        self._questioned: set[int] = set()
+        """Processes that were asked where they stand still."""
+        self._held: dict[int, float] = {}
+        """When a process was last seen held from outside, s of the monotonic clock."""
 
     def open(self) -> None:
         """Join the graph."""
@@ -90,7 +107,9 @@ class Waits:
         """Look once, and say what is to be said."""
         now = time.monotonic()
         wait = wait_of(self._look(now))
-        if wait != self._wait:
+        if wait is not None and self._wait is not None and wait.starts and self._wait.starts:
+            self._wait = wait  # one more node, or one less
+        elif wait != self._wait:
             if self._wait is not None and self._next_line > self._since + SAY_AGAIN_AFTER / 2:
                 self._say(f'no longer waiting for {self._wait.what}, after {now - self._since:.0f} s')
             self._wait, self._since, self._next_line = wait, now, now
@@ -105,6 +124,7 @@ class Waits:
                 self._next_line = now + SAY_AGAIN_AFTER
         if self._graph is not None:
             self._graph.publish(text)
+            self._graph.report(now, '' if self._wait is None or not self._stands_still else self._wait.what)
 
     def close(self) -> None:
         """Leave the graph."""
@@ -119,7 +139,28 @@ class Waits:
             if node.is_starting and now - node.started > LONGEST['starting']:
                 starting.append(node.name)
         seen = self._graph.look(now) if self._graph is not None else Seen()
-        return replace(seen, starting=tuple(starting))
+        reported = {} if self._graph is None else self._graph.reported
+        standing_still = []
+        for node in self._nodes:
+            learns = node.name == 'ppo_agent_node' and seen.phase in ('learn', 'done')
+            since = reported.get(node.name, 0.0)
+            if since > node.started and now - since > STANDSTILL and node.exit_code() is None and not learns:
+                held_by = node.held_by()
+                standing_still.append((node.name, held_by or f'see the end of {node.log}'))
+                if held_by:
+                    self._held[node.pid] = now
+                self._end_standstill(node, now - max(since, self._held.get(node.pid, 0.0)))
+        self._stands_still = bool(standing_still)
+        return replace(seen, starting=tuple(starting), standing_still=tuple(standing_still))
+
+    def _end_standstill(self, node: NodeProcess, seconds: float) -> None:
+        """Have the node write into its log where it stands, and end it in the end, if nothing holds it from outside."""
+        if node.pid not in self._questioned:
+            self._questioned.add(node.pid)
+            node.write_traceback()
+        elif seconds > ENDED_AFTER:
+            self._say(f'{node.name} has stood still for {seconds:.0f} s: it is ended; {node.log} has where it stood')
+            node.kill()
 
     def _newest_warning(self, names: tuple[str, ...]) -> str:
         found = [(*warning, node.name) for node in self._nodes
@@ -134,6 +175,7 @@ class _Graph:
         from shared_control_ros.processes import adopt_node_environment
         adopt_node_environment()
         import rclpy
+        from diagnostic_msgs.msg import DiagnosticStatus
         from rclpy.context import Context
         from rclpy.node import Node
         from shared_control_ros import contract
@@ -148,6 +190,12 @@ class _Graph:
         self._statuses = Polled(self._node, contract.DIAGNOSTICS, depth=50)
         self._publisher = self._node.create_publisher(String, contract.WAITING.name, contract.WAITING.qos)
         self._message = String()
+        self.reported: dict[str, float] = {}
+        """When each node reported last on /diagnostics, s of the monotonic clock."""
+        self._statuses_publisher = self._node.create_publisher(
+            contract.DIAGNOSTICS.msg_type, contract.DIAGNOSTICS.name, contract.DIAGNOSTICS.qos)
+        self._status = DiagnosticStatus(name=self._node.get_fully_qualified_name(), level=DiagnosticStatus.OK)
+        self._next_report = 0.0
         self._ticks = ''
         self._ticked = self._ended = self._phase_began = time.monotonic()
         self._phase: str | None = None
@@ -171,6 +219,7 @@ class _Graph:
     def _hear(self, message: Any, now: float) -> None:
         """Simulators report their ticks once a second, and whether they are paused."""
         for status in message.status:
+            self.reported[status.name.rpartition('/')[2]] = now
             values = {value.key: value.value for value in status.values}
             if 'ticks' in values:
                 self._paused = values.get('paused') == 'True'
@@ -182,6 +231,18 @@ class _Graph:
         if text != self._message.data:
             self._message.data = text
             self._publisher.publish(self._message)
+
+    def report(self, now: float, standing_still: str) -> None:
+        """Report on /diagnostics, once a second, a loop that stands still, and then that none does any more."""
+        from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+        level = DiagnosticStatus.ERROR if standing_still else DiagnosticStatus.OK
+        if now < self._next_report or (level == self._status.level and not standing_still):
+            return
+        self._next_report = now + 1.0
+        self._status.level, self._status.message = level, standing_still or 'ok'
+        message = DiagnosticArray(status=[self._status])
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._statuses_publisher.publish(message)
 
     def close(self) -> None:
         """Leave the graph."""

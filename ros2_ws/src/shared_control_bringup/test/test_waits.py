@@ -1,9 +1,14 @@
 """What a session says that it waits for."""
 
+import os
+import signal
+import sys
 import time
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
 from shared_control_bringup import parameters
+from shared_control_bringup import waits as waits_module
 from shared_control_bringup.node_process import NodeProcess
 from shared_control_bringup.waits import LONGEST, Seen, Waits, wait_of
 from shared_control_ros import contract
@@ -20,7 +25,9 @@ LONG = 1000.0
     (Seen(phase='practice', tick_age=LONG), 'a tick of the simulation'),
     (Seen(phase='teach', tick_age=LONG, paused=True), 'a person: it is paused'),
     (Seen(phase='learn', phase_age=LONG, tick_age=LONG), 'the robot to learn from the episode'),
-    (Seen(phase='test', episode_age=LONG), 'an episode to come to its end')])
+    (Seen(phase='test', episode_age=LONG), 'an episode to come to its end'),
+    (Seen(phase='teach', standing_still=(('teleop_key_node', 'a debugger holds it'),)),
+     'teleop_key_node, whose loop stands still (a debugger holds it), to go on')])
 def test_what_takes_too_long_is_named(seen, what):
     assert wait_of(seen).what == what
 
@@ -62,6 +69,89 @@ def test_a_simulator_without_a_controller_is_said_with_its_newest_warning(domain
         waits.close()
         simulator.interrupt()
         simulator.wait(10.0)
+
+
+FREEZES = """
+import sys, time
+from pathlib import Path
+from rclpy.node import Node
+from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.runner import run
+
+class Freezes:
+    def __init__(self):
+        self.node = Node('sim_tutor_node')
+        self._diagnostics = Diagnostics(self.node, 0.02)
+
+    def run(self, stop):
+        while True:
+            time.sleep(0.1)
+            if self._diagnostics.due():
+                self._diagnostics.publish({})
+            if Path(sys.argv[1]).exists():
+                never_again()
+
+    def close(self):
+        pass
+
+def never_again():
+    time.sleep(3600)
+
+run(Freezes, [])
+"""
+
+
+@pytest.fixture
+def watched(domain_id, observer, tmp_path, monkeypatch):
+    """A node that stands still when it is told to, what waits for it said, and what was reported of it."""
+    monkeypatch.setattr(waits_module, 'STANDSTILL', 3.0)
+    monkeypatch.setattr(waits_module, 'ENDED_AFTER', 6.0)
+    node = NodeProcess('sim_tutor_node', tmp_path / 'none.yaml', tmp_path / 'sim_tutor_node.log')
+    freeze = tmp_path / 'freeze'
+    node._command = [sys.executable, '-c', FREEZES, str(freeze)]
+    said, reports = [], observer.listen(contract.DIAGNOSTICS)
+    waits = Waits([node], said.append)
+    node.start()
+    waits.open()
+
+    def until(condition):
+        deadline = time.monotonic() + 60.0
+        while not condition():
+            assert time.monotonic() < deadline, said
+            waits.poll()
+            observer.spin_for(0.05)
+
+    def of(name):
+        return [report.status[0] for report in reports if report.status[0].name == name]
+
+    until(lambda: of('/sim_tutor_node'))
+    yield node, said, until, of, freeze
+    waits.close()
+    node.kill()
+    node.wait(10.0)
+
+
+def test_a_loop_that_somebody_has_stopped_is_said_and_reported_and_left_alone(watched):
+    node, said, until, of, _ = watched
+    os.kill(node.pid, signal.SIGSTOP)
+    began = time.monotonic()
+    until(lambda: time.monotonic() > began + 9.0 and of('/session'))
+    assert of('/session')[-1].level == DiagnosticStatus.ERROR
+    assert 'sim_tutor_node, whose loop stands still (somebody has stopped it' in of('/session')[-1].message
+    assert any('somebody has stopped it' in line for line in said)
+    os.kill(node.pid, signal.SIGCONT)
+    until(lambda: of('/session')[-1].level == DiagnosticStatus.OK)
+    assert '<module>' in node.log.read_text(), 'where it stood'
+    assert node.exit_code() is None
+
+
+def test_a_loop_that_stands_still_by_itself_writes_where_and_is_ended(watched):
+    node, said, until, _, freeze = watched
+    freeze.touch()
+    until(lambda: node.exit_code() is not None)
+    assert node.exit_code() == -signal.SIGKILL
+    assert 'in never_again' in node.log.read_text()
+    assert any('has stood still for' in line and str(node.log) in line for line in said)
 
 
 def test_the_newest_warning_of_a_node_is_found_in_its_log(tmp_path):

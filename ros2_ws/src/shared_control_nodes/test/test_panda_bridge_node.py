@@ -5,6 +5,7 @@ library (stand_in/) takes its place. Where the real one is installed, its calls 
 """
 
 import importlib.util
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -118,3 +119,17 @@ class TestWiring:
         assert observer.call(Trigger, 'robot/error_recovery', Trigger.Request()).success
         self.enable_beside(observer, commands, [0.0] * 7)
         assert self.enable(observer, False).success
+
+
+@pytest.mark.usefixtures('with_stand_in')
+def test_a_loop_that_stands_still_while_the_arm_is_under_control_ends_it(start_node, observer):
+    states = observer.listen(contract.JOINT_STATES)
+    node = start_node('panda_bridge_node', hostname='here', command_timeout=1.0)
+    observer.spin(lambda: states)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    assert observer.call(SetBool, 'robot/enable', SetBool.Request(data=True), beside=lambda: commands.publish(
+        Float64MultiArray(data=[0.0] * 7))).success
+    node.process.send_signal(signal.SIGSTOP)
+    observer.spin_for(3.0)  # twice command_timeout, and more
+    node.process.send_signal(signal.SIGCONT)
+    assert node.process.wait(20) == -signal.SIGALRM

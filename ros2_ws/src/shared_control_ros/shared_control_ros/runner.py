@@ -1,5 +1,6 @@
 """Start and stop of a node, the same for all of them."""
 
+import faulthandler
 import signal
 import sys
 from collections.abc import Callable
@@ -55,6 +56,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:  # nohup
             signal.signal(number, stop)
+    faulthandler.register(signal.SIGUSR1, 2)  # who started it asks so where it stands still
     runnable: Runnable | None = None
     try:
         runnable = make()

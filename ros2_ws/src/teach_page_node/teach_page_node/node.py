@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from rclpy.node import Node
+from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.task_parameter import declare_task
@@ -43,13 +44,21 @@ class TeachPageNode:
         self._desk = LiveDesk(node, task, showing, Path(session) if session else None)
         given = os.environ.get(TOKEN_VARIABLE, '')
         self._tells_address = not given  # otherwise whoever gave it tells: a session keeps what this node says
+        self._diagnostics = Diagnostics(node, 1.0 / frame_rate)
         self._server = PageServer(self._desk, host, port, frame_rate, given or token)
 
     def run(self, stop: Stop) -> None:
         """Serve the page until told to stop."""
         if self._tells_address:
             self.node.get_logger().info(f'open {self._server.address}')
-        asyncio.run(self._server.serve(lambda: stop.requested))
+        asyncio.run(self._server.serve(lambda: self._attend(stop)))
+
+    def _attend(self, stop: Stop) -> bool:
+        """Called before each picture: whether the page is to be closed."""
+        self._diagnostics.tick()
+        if self._diagnostics.due():
+            self._diagnostics.publish({})
+        return stop.requested
 
     def close(self) -> None:
         """Leave no moment behind."""

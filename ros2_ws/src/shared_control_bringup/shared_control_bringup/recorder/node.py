@@ -12,6 +12,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from shared_control_records.bag.last_sent import last_sent
 from shared_control_records.bag.writer import BagWriter
 from shared_control_ros import contract
+from shared_control_ros.clock_steps import ClockSteps, in_words
 from shared_control_ros.contract import Topic
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -57,10 +58,10 @@ class RecordedTopic:
         self._channel = bag.add_topic(
             self.name, described.name, described.definition, described.type_hash, qos_yaml(self._topic.qos))
 
-    def drain(self) -> None:
-        """Write all messages that have come."""
+    def drain(self, received_after_ns: int = 0) -> None:
+        """Write all messages that have come; those alone that came after a time of the day, when that is given."""
         self.collect()
-        while self._waiting:
+        while self._waiting and self._waiting[0][1]['received_timestamp'] >= received_after_ns:
             data, info = self._waiting.popleft()
             if info['source_timestamp'] in self.recorded:
                 continue
@@ -110,6 +111,9 @@ class SessionRecorder:
             latched[name].recorded = sent
         self._diagnostics = Diagnostics(self.node, POLL_PERIOD)
         self._background = Background(self.node)
+        self._clock_steps = ClockSteps()
+        self._clock_problem: dict[str, str] = {}
+        """That the clock was set, until it is reported."""
         self._lost = 0
         self._messages = self._bytes = 0
         """In the files before this one."""
@@ -126,10 +130,26 @@ class SessionRecorder:
         """Go on in another file. What comes meanwhile waits with the middleware."""
         seconds, size = time.monotonic() - self._began, self._bag.bytes
         if 0.0 < self._split_seconds <= seconds or 0.0 < self._split_bytes <= size:
-            self._bag.finish()
-            self._messages += self._bag.messages
-            self._bytes += self._bag.bytes
-            self._open(self._bag.bag)
+            self._split()
+
+    def _split(self) -> None:
+        self._bag.finish()
+        self._messages += self._bag.messages
+        self._bytes += self._bag.bytes
+        self._open(self._bag.bag)
+
+    def _follow_the_clock(self) -> None:
+        """Say that the clock was set; go on in another file when it was set back: within one, times run forwards."""
+        step = self._clock_steps.new()
+        if not step:
+            return
+        what = in_words(step)
+        if step < 0.0:
+            what += ': the bag goes on in another file, and nothing is lost'
+            self._drain(received_after_ns=time.time_ns() - round(step / 2 * 1e9))
+            self._split()
+        self.node.get_logger().warning(what)
+        self._clock_problem = {'clock': what}
 
     def run(self, stop: Stop) -> None:
         """Record until ``stop.requested``, then finish the file."""
@@ -139,6 +159,7 @@ class SessionRecorder:
                 break
             started = time.monotonic()
             self._diagnostics.tick()
+            self._follow_the_clock()
             self._drain()
             if started >= next_flush:
                 self._bag.flush()
@@ -162,16 +183,17 @@ class SessionRecorder:
         for topic in self._topics:
             topic.collect()
 
-    def _drain(self) -> None:
+    def _drain(self, received_after_ns: int = 0) -> None:
         for topic in self._topics:
-            topic.drain()
+            topic.drain(received_after_ns)
 
     def _report(self) -> None:
         lost = {topic.name: count for topic in self._topics if (count := topic.lost())}
         self._lost += sum(lost.values())
         self._diagnostics.publish(
-            {name: f'{count} messages lost in the last second' for name, count in lost.items()},
+            {name: f'{count} messages lost in the last second' for name, count in lost.items()} | self._clock_problem,
             messages=self._messages + self._bag.messages, lost=self._lost, bytes=self._bytes + self._bag.bytes)
+        self._clock_problem = {}
 
 
 def main(args: list[str] | None = None) -> int:

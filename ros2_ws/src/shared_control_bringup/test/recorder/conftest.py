@@ -33,10 +33,10 @@ def ros_domain(domain_id: int) -> int:
 class Recorder:
     """A recorder in a process of its own."""
 
-    def __init__(self, arguments: list[str]):
+    def __init__(self, arguments: list[str], environment: dict[str, str]):
         self.process = subprocess.Popen(
             [sys.executable, '-m', 'shared_control_bringup.recorder.node', '--ros-args', *arguments],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env={**os.environ, **environment})
 
     def stop(self, how: signal.Signals = signal.SIGINT) -> tuple[int, str]:
         """Send a signal; gives exit code and stderr."""
@@ -51,12 +51,14 @@ class Recorder:
 
 @pytest.fixture
 def start_recorder(ros_domain: int) -> Iterator[Callable[..., Recorder]]:
-    """Starts recorders: ``start_recorder(bag, flush_period=0.1)``."""
+    """Starts recorders: ``start_recorder(bag, environment={}, flush_period=0.1)``."""
     started: list[Recorder] = []
 
-    def start(bag: Path | str | None = None, **parameters: object) -> Recorder:
+    def start(bag: Path | str | None = None, environment: dict[str, str] | None = None,
+              **parameters: object) -> Recorder:
         given = ({} if bag is None else {'output': bag}) | parameters
-        recorder = Recorder([part for name, value in given.items() for part in ('-p', f'{name}:={value}')])
+        recorder = Recorder([part for name, value in given.items() for part in ('-p', f'{name}:={value}')],
+                            environment or {})
         started.append(recorder)
         return recorder
 

@@ -10,7 +10,9 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 from shared_control_records.bag import recover
+from shared_control_records.bag.reader import read_bag
 from shared_control_ros import contract
+from shared_control_testing.faults.machine import Machine
 
 ALL_TOPICS = {topic.full_name for topic in contract.BAG_TOPICS}
 
@@ -188,3 +190,44 @@ def test_what_cannot_work_is_said_in_one_line(start_recorder, tmp_path, paramete
     [line] = [line for line in errors.splitlines() if line.startswith('error: ')]
     assert said.format(tmp=tmp_path) in line
     assert 'Traceback' not in errors
+
+
+@pytest.fixture
+def machine(tmp_path):
+    machine = Machine(tmp_path)
+    yield machine
+    machine.close()
+
+
+def test_a_clock_that_is_set_is_said_once_and_nothing_is_lost(start_recorder, traffic, tmp_path, machine):
+    """Back by an hour and forward by two, while messages come."""
+    bag = tmp_path / 'bag'
+    recorder = start_recorder(bag, machine.environment)
+    traffic.wait_for_recorder()
+    traffic.run(1.0)
+    for step in (-3600.0, 7200.0):
+        machine.set_clock(step)
+        traffic.run(1.5)
+    code, errors = recorder.stop()
+    assert code == 0, errors
+    assert [line.partition("this machine's ")[2] for line in errors.splitlines() if 'clock was set' in line] == [
+        'clock was set back by 3600.0 s: the bag goes on in another file, and nothing is lost',
+        'clock was set forward by 7200.0 s, or it slept']
+
+    files = metadata(bag)['relative_file_paths']
+    assert files == ['bag_0.mcap', 'bag_1.mcap']
+    in_file = [read_with_mcap(bag / name) for name in files]
+    for topic, sent in traffic.sent.items():
+        messages = [message for one in in_file for message in one.get(topic, [])]
+        assert [message.data for message in messages] == sent, topic
+        for one in in_file:
+            times = [message.log_time for message in one.get(topic, [])]
+            assert times == sorted(times), topic
+    states = read_bag(bag, every_tick=True).joint_states
+    assert len(states.received_ns) == len(traffic.sent['/joint_states'])
+    assert (states.received_ns[1:] >= states.received_ns[:-1]).all()
+    with AnyReader([bag]) as reader:
+        reports = [reader.deserialize(data, 'diagnostic_msgs/msg/DiagnosticArray').status[0]
+                   for data in by_topic(reader)['/diagnostics']]
+    assert sum('clock was set back' in report.message for report in reports) == 1
+    assert {value.key: value.value for value in reports[-1].values}['lost'] == '0'

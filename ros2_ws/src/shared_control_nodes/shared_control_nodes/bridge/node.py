@@ -20,6 +20,7 @@ from shared_control_ros.joint_state_publisher import JointStatePublisher
 from shared_control_ros.parameters import ParameterError, declare
 from shared_control_ros.robot_inputs import TorqueInput
 from shared_control_ros.runner import Stop, run
+from shared_control_ros.watchdog import Watchdog
 from std_srvs.srv import SetBool, Trigger
 
 from .arm import IDLE, Arm, ArmState
@@ -28,6 +29,9 @@ TICKS_PER_POLL = 10
 """How often services are looked at and throttled joint states go out."""
 POLL_SECONDS = 0.0002
 """How often the arm's state is looked at while it is under control."""
+CONTROL_STANDSTILL = 0.5
+"""panda-python goes on applying the last torque when this loop stands still; after this, s, the process ends, and the
+control with it: the arm then stops by itself."""
 CLOCK_DRIFT = 0.05
 """How far the arm's clock may drift from this machine's before stamps are set anew, s."""
 
@@ -56,6 +60,8 @@ class PandaBridgeNode:
         self._enable_name = node.resolve_service_name(contract.ROBOT_ENABLE_SERVICE)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+        self._watchdog = Watchdog()
+        self._control_watchdog = Watchdog(max(CONTROL_STANDSTILL, 2.0 * self._timeout))
         self._ticks = 0
         self._set_clock()
 
@@ -69,6 +75,7 @@ class PandaBridgeNode:
     def run(self, stop: Stop) -> None:
         """Pass states and torques on until told to stop."""
         while not stop.requested:
+            (self._control_watchdog if self._enabled else self._watchdog).feed()
             self._hear()
             state = self._arm.read()
             if state.time_ms == self._state.time_ms:
@@ -115,6 +122,7 @@ class PandaBridgeNode:
         return time.monotonic() - self._command_time
 
     def _disable(self) -> None:
+        self._watchdog.feed()  # ending the control may take the arm a while
         self._enabled = False
         self._arm.stop()
 

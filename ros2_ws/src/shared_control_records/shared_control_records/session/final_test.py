@@ -1,5 +1,6 @@
 """The file that keeps the final test of a policy alone (``test.json``)."""
 
+import hashlib
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -49,6 +50,8 @@ class FinalTest:
     """Mean |velocity| of a success, m/s."""
     sample_period: float = STEPS_PER_SAMPLE * POLICY_PERIOD
     """Sample period of the tracks, s."""
+    policy: str = ''
+    """SHA-256 of the policy file that was tested; empty when not known."""
 
     @property
     def successes(self) -> int:
@@ -59,12 +62,12 @@ class FinalTest:
 _FINAL_TEST = TypeAdapter(FinalTest)
 
 
-def save_test(evaluation: Evaluation, path: Path) -> FinalTest:
-    """Keep an evaluation in ``path``."""
+def save_test(evaluation: Evaluation, path: Path, policy: str = '') -> FinalTest:
+    """Keep an evaluation of the policy file with this SHA-256 in ``path``."""
     task = evaluation.episodes[0].task
     test = FinalTest(
         tuple(_tested(episode) for episode in evaluation.episodes), task.scene.goal_radius,
-        getattr(task, 'velocity_max', FinalTest.velocity_max))
+        getattr(task, 'velocity_max', FinalTest.velocity_max), policy=policy)
     content = {'successes': test.successes, **asdict(test)}
     write_atomically(path, json.dumps(content, indent=1).encode())
     return test
@@ -82,6 +85,11 @@ def load_test(path: Path) -> FinalTest | None:
         return _FINAL_TEST.validate_json(path.read_bytes())
     except ValidationError as error:
         raise ValueError(f'{path} is no result of a test: {what_is_wrong(error)}') from error
+
+
+def sha256(path: Path) -> str:
+    """SHA-256 of a file, as hexadecimal digits."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _tested(episode: Episode) -> TestedEpisode:

@@ -19,6 +19,7 @@ from std_srvs.srv import SetBool, Trigger
 from ..live_session import Session
 from ..nodes import Observer
 from .checks import violations
+from .machine import Machine
 from .messages import disturb
 from .plan import TOPICS, Fault
 
@@ -58,10 +59,11 @@ class Campaign:
     """
 
     def __init__(self, faults: list[Fault], folder: Path, domain: int, say: Callable[[str], None] = print):
+        folder.mkdir(parents=True, exist_ok=True)
+        self._machine = Machine(folder)
         self._waiting = list(faults)
         self._folder, self._domain, self._say = folder, domain, say
         self.outcomes: list[Outcome] = []
-        folder.mkdir(parents=True, exist_ok=True)
         self._parameters = folder / 'unpaced.yaml'
         self._parameters.write_text(PARAMETERS)
 
@@ -74,6 +76,7 @@ class Campaign:
         return self.outcomes
 
     def _run_session(self, folder: Path, deadline: float) -> None:
+        self._machine.set_clock(-self._machine.clock_s)
         graph = _Graph(self._domain)
         session = self._start(folder)
         of_session: list[Outcome] = []
@@ -103,7 +106,8 @@ class Campaign:
         finally:
             session.close()
             graph.close()
-        self._check(folder, of_session, killed_ns)
+        clock_was_set = any(outcome.fault.kind == 'clock' for outcome in of_session)
+        self._check(folder, of_session, [] if clock_was_set else killed_ns)
         self.outcomes += of_session
 
     def _start(self, folder: Path, *options: str) -> Session:
@@ -112,7 +116,7 @@ class Campaign:
             '--tutor', 'sim', '--episodes', str(EPISODES), '--test-episodes', '1', '--seed', '0',
             '--params-file', str(self._parameters), '--output', str(folder))
         with log:
-            return Session(list(arguments), stdout=log, stderr=log)
+            return Session(list(arguments), stdout=log, stderr=log, env={**os.environ, **self._machine.environment})
 
     def _interrupt(self, session: Session, folder: Path, outcome: Outcome) -> Session:
         """Ctrl-C, and on with what is there."""
@@ -129,6 +133,16 @@ class Campaign:
         if fault.target in topics:
             sent = graph.disturb(contract.ros_topic(topics[fault.target]), fault)
             outcome.what = f'{sent} messages'
+            return
+        if fault.kind == 'network':
+            share = random.Random(fault.seed).uniform(0.02, 0.3)
+            self._machine.fail(fault.target, share)
+            graph.serve_for(fault.seconds)
+            self._machine.fail(fault.target, 0.0)
+            outcome.what = f'{share:.0%} of all packets'
+            return
+        if fault.kind == 'clock':
+            self._set_clock(outcome, session)
             return
         process = session.node(fault.target)
         if not process:
@@ -155,6 +169,17 @@ class Campaign:
                     resource.prlimit(process, resource.RLIMIT_FSIZE, before)
                 case 'emergency stop':
                     outcome.violations += graph.emergency_stop(session, process)
+
+    def _set_clock(self, outcome: Outcome, session: Session) -> None:
+        """Set the clock, and, in every other case, start the simulator anew: the robot's time is set with it."""
+        fault = outcome.fault
+        step = 60.0 * fault.seconds if fault.target == 'forward' else -60.0 * fault.seconds
+        self._machine.set_clock(step)
+        outcome.what = f'by {step:.0f} s'
+        if fault.seed % 2 and (simulator := session.node('panda_sim_node')):
+            with suppress(ProcessLookupError):
+                os.kill(simulator, signal.SIGKILL)
+            outcome.what += ', and the simulator killed'
 
     def _end(self, session: Session, outcomes: list[Outcome]) -> None:
         """Let it come to its end, or ask it to: whichever, in order."""

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from shared_control import contract
 
+from .machine import WAYS
+
 NODES = ('panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'sim_tutor_node', 'session_recorder_node',
          'ppo_agent_node')
 WRITERS = ('session_recorder_node', 'ppo_agent_node')
@@ -19,12 +21,14 @@ TARGETS: dict[str, tuple[str, ...]] = {
     'reorder': tuple(topic.name for topic in TOPICS),
     'corrupt': tuple(topic.name for topic in TOPICS),
     'disk full': WRITERS,
+    'network': WAYS,
+    'clock': ('back', 'forward'),
     'emergency stop': ('torque_ctrl_node',),
     'interrupt': ('session',),
 }
 """What each kind of fault can befall."""
-SHARES = {'kill': 0.26, 'stop': 0.16, 'delay': 0.12, 'duplicate': 0.1, 'reorder': 0.1, 'corrupt': 0.14,
-          'disk full': 0.05, 'emergency stop': 0.04, 'interrupt': 0.03}
+SHARES = {'kill': 0.22, 'stop': 0.14, 'delay': 0.1, 'duplicate': 0.07, 'reorder': 0.07, 'corrupt': 0.12,
+          'network': 0.1, 'clock': 0.06, 'disk full': 0.05, 'emergency stop': 0.04, 'interrupt': 0.03}
 """How often each kind is drawn."""
 PHASES = ('teach', 'learn')
 """Phases of the learner at whose beginning the clock of a fault starts; a fault falls into the next one, too."""
@@ -38,18 +42,18 @@ class Fault:
     kind: str
     """A key of :data:`TARGETS`."""
     target: str
-    """A node, a topic, or the session."""
+    """A node, a topic, the session, what becomes of packets, or where the clock is set to."""
     phase: str
     """It befalls the session ``wait`` s after this phase of the learner has begun."""
     wait: float
     """s"""
     seconds: float
-    """How long it lasts; a kill has no duration."""
+    """How long it lasts; a kill has no duration. A clock is set by as many minutes."""
     seed: int
     """Seed of what is random in it."""
 
     def __str__(self) -> str:
-        duration = '' if self.kind in ('kill', 'interrupt') else f' for {self.seconds:.1f} s'
+        duration = '' if self.kind in ('kill', 'interrupt', 'clock') else f' for {self.seconds:.1f} s'
         return f'{self.number}: {self.kind} {self.target}{duration}, {self.wait:.2f} s into {self.phase}'
 
 
