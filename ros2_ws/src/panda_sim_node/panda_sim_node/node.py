@@ -56,6 +56,7 @@ class PandaSimNode:
             node, 'seed', 0, 'Of the sequence of ball starts; setting it begins the sequence anew.',
             minimum=0, maximum=2**31 - 1, read_only=False)
         task = declare_task(node, 'The task: the tray on the flange, and where a ball is dropped.')
+        self._task_name = task.name
         self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
         physics = declare(node, 'physics', 'bullet', 'The physics.', choices=names(WORLDS))
@@ -234,7 +235,7 @@ class PandaSimNode:
             problems, ticks=self._tick, tick_p50_ms=f'{self._times.quantile_ms(0.5):.2f}',
             tick_p99_ms=f'{self._times.quantile_ms(0.99):.2f}', late_ticks=self._times.late,
             running_seconds=f'{self._running_seconds:.3f}', simulated_seconds=f'{simulated:.3f}',
-            missed_commands=self._missed, paused=self._paused)
+            missed_commands=self._missed, paused=self._paused, task=self._task_name)
 
     def close(self) -> None:
         """Publish the figures of the whole run and free the physics server."""

@@ -83,7 +83,7 @@ class _Bar(Callbacks):
         """See :class:`Callbacks`."""
         tests = [passed for _, passed in read_run(self._folder).tests]
         self._bar.set_postfix_str(
-            f'return {episode.episode_return:.0f}, human {episode.intervention_rate:.0%} of the time, '
+            f'return {episode.episode_return:.0f}, intervention rate {episode.intervention_rate:.0%}, '
             f'tests passed {sum(tests)} of {len(tests)}{", the last one" if tests[-1:] == [True] else ""}')
         self._bar.update()
 

@@ -35,15 +35,15 @@ def run(args: argparse.Namespace) -> int:
         for name in args.tutors:
             rows.append(alone(name, task, args.individuals, bar))
     output = prose(args.json)
-    print(f'{"":14} {"use":9} {"succeed":>8} {"kept":>5} {"off, mm":>8} {"held":>5} {"presses":>8}  source',
+    print(f'{"":14} {"use":9} {"succeed":>8} {"kept":>5} {"off, mm":>8} {"rate":>5} {"presses":>8}  source',
           file=output)
     for row in rows:
         print(f'{row["tutor"]:14} {row["use"]:9} {row["success"]:>8.0%} {row["kept"]:>5.0%} '
-              f'{1e3 * row["position_error"]:>8.0f} {row["held"]:>5.0%} {row["presses_a_minute"]:>8.0f}  '
+              f'{1e3 * row["position_error"]:>8.0f} {row["intervention_rate"]:>5.0%} {row["presses_a_minute"]:>8.0f}  '
               f'{row["source"]}', file=output)
     print(f'{args.individuals} individuals each, alone with an idle robot, one episode of {task.episode_seconds:g} s; '
-          'off: median |position error| over the last 3 s; presses: changes of the moment in a minute. Simulated.',
-          file=output)
+          'off: median |position error| over the last 3 s; rate: intervention rate; presses: changes of the moment in a '
+          'minute. Simulated.', file=output)
     write_json({'task': task.name, 'tutors': rows}, args.json)
     return 0
 
@@ -68,7 +68,7 @@ def alone(name: str, task: Task, individuals: int, bar: tqdm) -> dict[str, Any]:
         'individuals': individuals, 'success': mean(episode.success for episode in episodes),
         'kept': mean(not episode.failed for episode in episodes),
         'position_error': median(settled(np.array(episode.position_error)) for episode in episodes),
-        'held': mean(episode.intervention_rate for episode in episodes),
+        'intervention_rate': mean(episode.intervention_rate for episode in episodes),
         'presses_a_minute': mean(map(_presses_a_minute, episodes))}
 
 

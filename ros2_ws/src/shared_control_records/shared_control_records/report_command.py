@@ -37,7 +37,8 @@ def run(args: argparse.Namespace) -> int:
         page = write_bag_report(bag, args.output or args.source.absolute().with_name(f'{args.source.stem}_report'))
         if not session_record(bag):
             print('note: this bag has no record of the session (`ros2 bag record` and `convert` keep none): preset, '
-                  'test of the policy and restarts are unknown, the tutor is guessed, the task is taken to be balance '
-                  "unless a session's settings.json lies beside the bag", file=sys.stderr)
+                  'test of the policy and restarts are unknown, the tutor is guessed, the task is what its nodes '
+                  "reported (balance, if they did not) unless a session's settings.json lies beside the bag",
+                  file=sys.stderr)
     print(page)
     return 0

@@ -83,14 +83,22 @@ def test_files_hold_every_sample_once(tmp_path):
 @pytest.mark.parametrize(('test', 'numbers'), [('perturbation', ['fig18', 'fig19']), ('trajectory 0.5 Hz', ['fig23'])])
 def test_figures_bear_the_numbers_of_the_thesis(test, numbers):
     result = constant(0.01, 0.02, test=test)
-    found = list(plots([result, result]))
+    found = list(plots([result] * 5))
     assert [plot.name[:5] for plot in found[:-1]] == numbers
     for plot in found:
         figure = Figure(layout='constrained')
         plot.draw(figure)
         legend = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert legend == ['mean over policies', '± SEM'] + (['push'] if test == 'perturbation' else [])
-        assert '2 policies, 4 episodes' in figure.get_suptitle()
+        assert legend == ['mean over 5 policies', '± standard error'] + (['push'] if test == 'perturbation' else [])
+        assert plot.caption.startswith(f'Test {test}: 5 policies, 10 episodes.') and 'standard error' in plot.caption
+
+
+def test_the_mean_of_two_has_no_band_that_looks_certain():
+    plot = next(iter(plots([constant(0.01, 0.02, test='perturbation')] * 2)))
+    figure = Figure(layout='constrained')
+    plot.draw(figure)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ['mean over 2 policies', 'push']
+    assert 'standard error' not in plot.caption
 
 
 @pytest.fixture

@@ -1,15 +1,18 @@
 """Bags that rosbag2's own tools wrote, as far as ``mcap`` and ``rosbags`` can stand in for them."""
 
 import dataclasses
+import json
 from collections import Counter
 
 import numpy as np
+import pandas as pd
 import pytest
 from rosbags.rosbag2 import Reader
 from shared_control import contract
 from shared_control.cli import main
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.checks import check_bag
+from shared_control_records.bag.files import find_bag
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_testing import rosbag2
 from shared_control_testing import sessions as made
@@ -129,3 +132,34 @@ def test_contract_topics_that_nobody_published_are_named(own, tmp_path):
     """`ros2 bag record` without --include-unpublished-topics leaves them out."""
     found = check_bag(read_bag(rosbag2.convert(own, tmp_path / 'other')))
     assert f'{contract.DISTURBANCE.full_name} was not recorded' in found
+
+
+@pytest.mark.parametrize(('node', 'command'), [
+    ('torque_ctrl_node', ['report']), ('panda_sim_node', ['export']), ('robot1/torque_ctrl_node', ['report'])])
+def test_a_bag_without_a_record_is_of_the_task_that_its_nodes_reported(tmp_path, monkeypatch, capsys, node, command):
+    """`ros2 bag record` beside a graph that runs another task: nobody says which when the bag is read."""
+    recording = made.record([made.lesson(100)])
+    recording.add(contract.DIAGNOSTICS, made.START_NS + made.MS, made.status(made.START_NS, node, task='detour'))
+    bag = recording.write(tmp_path / 'bag')
+    assert read_bag(bag).task.name == 'detour' and len(read_bag(bag).applied.moment[0]) == 2
+    assert run(monkeypatch, *command, bag, '--output', tmp_path / 'out') == 0
+    if command == ['report']:
+        assert json.loads((tmp_path / 'out' / 'summary.json').read_text())['task'] == 'detour'
+    else:
+        assert 'm_x_applied' in pd.read_parquet(tmp_path / 'out')
+
+
+def test_what_a_session_kept_of_its_task_goes_before_what_nodes_report(tmp_path):
+    recording = made.record([made.lesson(50)])
+    recording.add(contract.DIAGNOSTICS, made.START_NS + made.MS, made.status(made.START_NS, 'other', task='detour'))
+    bag = recording.write(tmp_path / 'session' / 'bag')
+    (bag.parent / 'settings.json').write_text('{"task": "plate"}')
+    for path in (bag, find_bag(bag.parent)):
+        assert read_bag(path).task.name == 'plate'
+
+
+def test_a_task_that_is_not_installed_is_named(tmp_path):
+    recording = made.record([made.lesson(50)])
+    recording.add(contract.DIAGNOSTICS, made.START_NS + made.MS, made.status(made.START_NS, 'x', task='juggle'))
+    with pytest.raises(BagReadError, match="no task 'juggle'; there are balance, detour, plate"):
+        read_bag(recording.write(tmp_path / 'bag'))

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from importlib.metadata import version
 
 import numpy as np
 import pytest
@@ -36,7 +37,7 @@ def evaluation():
 @pytest.fixture
 def no_picture(monkeypatch):
     """Drawing takes a second."""
-    monkeypatch.setattr(report, 'draw_picture', lambda path, *_: path.write_bytes(PNG))
+    monkeypatch.setattr(report, 'draw_picture', lambda path, *_: path.write_bytes(PNG) and [])
 
 
 @pytest.fixture(scope='module')
@@ -66,7 +67,8 @@ def test_the_summary_has_the_figures(folder):
     write_report(folder, restarts=1)
     summary = json.loads(folder.summary.read_text())
     assert summary == {
-        'task': 'balance', 'preset': 'coached', 'tutor': 'simulated: expert', 'simulated_tutor': True,
+        'task': 'balance', 'preset': 'coached', 'seed': 0, 'recorded': '2026-11-22T13:30:00Z',
+        'tutor': 'simulated: expert', 'simulated_tutor': True,
         'duration_s': 3.0, 'episodes_taught': 3, 'episodes_broken_off': 0,
         'taught_s': 3.0, 'key_presses': 15, 'autonomous_success': 19, 'autonomous_episodes': 20,
         'control_rate_hz': pytest.approx(999.0), 'real_time_factor': pytest.approx(0.999),
@@ -84,6 +86,10 @@ def test_the_report_says_what_matters_and_needs_no_other_file(folder):
     assert 'src="data:image/png;base64,' in page
     assert 'http' not in page
     assert folder.picture.read_bytes().startswith(PNG)
+    assert folder.picture.with_suffix('.pdf').read_bytes()[:4] == b'%PDF'
+    assert 'shared-control' in folder.picture.with_suffix('.svg').read_text()
+    assert page.count('<figcaption>') == page.count('src="data:image/png;base64,') == 6
+    assert f'shared-control {version("shared-control")} · seed 0 · 2026-11-22 · recorded' in page
 
 
 @pytest.mark.parametrize(('tutor', 'said'), [

@@ -3,6 +3,8 @@
 import csv
 import json
 import re
+from datetime import date
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +12,7 @@ import pytest
 from shared_control.cli import main
 from shared_control_records.study.folder import StudyFolder
 from shared_control_records.study.result import RESULT, TESTS
-from shared_control_records.study_report.measures import load_study, run_table
+from shared_control_records.study_report.measures import away, load_study, run_table
 from shared_control_records.study_report.report import write_study_report
 from shared_control_records.study_report.statistics import Times, beats, bootstrap, improvement, iqm, sooner, survival
 from shared_control_records.study_report.tables import comparison_table, conditions_table
@@ -104,7 +106,10 @@ def test_the_report_is_one_page_with_its_figures_and_numbers(folder, tmp_path):
     assert page.index('All participants were simulated') < page.index('In short')
     figures = sorted(path.stem for path in (tmp_path / 'report/figures').glob('*.svg'))
     assert [int(name[3:5]) for name in figures] == list(range(14, 25))
-    assert figures == sorted(path.stem for path in (tmp_path / 'report/figures').glob('*.png'))
+    for kind in ('png', 'pdf'):
+        assert figures == sorted(path.stem for path in (tmp_path / 'report/figures').glob(f'*.{kind}'))
+    assert page.count('<figcaption>') == 11 and page.count('<caption>') == 4
+    assert f'shared-control {version("shared-control")} · seed 0 · {date.today():%Y-%m-%d}</footer>' in page
     assert page.count('src="data:image/svg+xml;base64,') == 11
     assert not re.search(r'(src|href)="(?!data:)', page), 'needs no other file'
     for name in (*figures, 'runs', 'conditions', 'comparisons', 'groups'):
@@ -135,3 +140,17 @@ def test_what_is_unfinished_or_damaged_is_left_out_and_said(plan, tmp_path, monk
     monkeypatch.setattr('sys.argv', ['shared-control', 'report', str(empty.path)])
     assert main() == 2
     assert f'no run of the study in {Path(empty.path)} is done yet' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(('task', 'lost'), [
+    ('balance', 0.2), ('plate', 0.15 * 2 ** 0.5), ('detour', np.hypot(0.21, 0.23))])
+def test_a_ball_that_fell_lies_where_the_tray_of_its_task_ends(tmp_path, task, lost):
+    path = tmp_path / 'plan.yaml'
+    path.write_text(PLAN.replace('episodes: 20', f'episodes: 20, task: {task}'))
+    study = load_study(made_study(tmp_path / 'study', path))
+    run = study.of('coached')[0]
+    assert study.task('coached').name == task and study.task('autonomous').name == 'balance'
+    assert study.lost(run) == pytest.approx(lost, abs=1e-6)
+    test = run.tests['randomized']
+    test.position_error[:] = np.nan
+    assert away(test, study.lost(run)).max() == pytest.approx(lost)

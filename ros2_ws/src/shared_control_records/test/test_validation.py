@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from shared_control.command_line import write_json
 from shared_control.control.references import cosine_reference, cosine_velocity
 from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import panda
+from shared_control_records.plotting.plot import origin
 from shared_control_records.validation.chain import end_pose, full_chain, table_2_chain
 from shared_control_records.validation.compliance import check_compliance
 from shared_control_records.validation.figures import plots
@@ -138,7 +140,8 @@ def test_figures_3_to_11_and_more(tmp_path, runs):
     assert [plot.name[:5] for plot in found[:9]] == [f'fig{number:02d}' for number in range(3, 12)]
     assert len(found) > 9
     for plot in (found[8], found[-1]):
-        plot.save(tmp_path)
+        plot.save(tmp_path, origin(7, date(2026, 11, 26)))
+        assert plot.caption.endswith('.') and (tmp_path / f'{plot.name}.pdf').read_bytes().startswith(b'%PDF')
         assert (tmp_path / f'{plot.name}.png').read_bytes().startswith(b'\x89PNG')
         assert '</svg>' in (tmp_path / f'{plot.name}.svg').read_text()
 

@@ -51,6 +51,7 @@ class TorqueCtrlNode:
         robot = declare_robot(node)
         gains = declare(node, 'gains', 'task', 'PD gains.', choices=tuple(robot.gains))
         task = declare_task(node, 'The task: along which axes moments count, and which tray the robot carries.')
+        self._task_name = task.name
         robot = carrying(robot, task.scene)
         self._timeout = declare(
             node, 'command_timeout', 0.1, 'A wrench older than this counts as zero.', unit='s',
@@ -183,7 +184,7 @@ class TorqueCtrlNode:
             problems[self._command_publisher.topic_name] = problem
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if self._safety.is_stopped else None, enabled=self._safety.enabled,
-            emergency_stop=self._safety.is_stopped, applied=self._applied.applied)
+            emergency_stop=self._safety.is_stopped, applied=self._applied.applied, task=self._task_name)
 
     def close(self) -> None:
         """Bring an arm that is moved to rest: without torques it would go on by its momentum until it brakes."""

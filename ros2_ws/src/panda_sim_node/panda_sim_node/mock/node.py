@@ -59,6 +59,7 @@ class MockPandaNode:
             minimum=0, maximum=2**31 - 1, read_only=False)
         task = declare_task(node, 'The task: the tray on the flange, and where a ball is dropped.')
         physics = declare(node, 'physics', 'bullet', 'What it is inside.', choices=names(WORLDS))
+        self._task_name = task.name
         self._starts = BallStarts(task, seed)
         follow_seed(node, self._starts)
         pace = declare(
@@ -193,7 +194,7 @@ class MockPandaNode:
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if mode is Mode.REFLEX else None, mode=mode.value,
             reflexes=self._reflexes, dropped_commands=self._dropped, limited_ticks=self._robot.limited_ticks,
-            ticks=self._tick)
+            ticks=self._tick, task=self._task_name)
 
     def close(self) -> None:
         """Publish the figures of the whole run and free the physics server."""

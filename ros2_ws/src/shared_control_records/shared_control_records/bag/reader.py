@@ -19,6 +19,7 @@ from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
+from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 
 from .chunks import Block, OutOfOrder, read_blocks
@@ -26,7 +27,7 @@ from .fast_decode import BulkTopic, Columns, Row, command_layout, joint_state_la
 from .files import BagReadError
 from .metadata import is_finished
 from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Ticks, Wrenches
-from .task import recorded_task
+from .task import recorded_task, reported_task
 from .ticks import JointStateRows, digests, to_ns
 
 _WRENCHES = (
@@ -76,7 +77,8 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
     """Read a bag of ``robot`` (the Panda when not given): a rosbag2 folder or a single MCAP file.
 
     Args:
-        task: along whose axes moments are taken from wrenches; the one that the bag was recorded of when not given.
+        task: along whose axes moments are taken from wrenches; when not given the one that the session kept, or
+            that its nodes reported, or ``balance``.
         every_tick: keep the joint states of every tick, 0.7 GB an hour, and not those of every 10 ms alone.
 
     Raises:
@@ -85,9 +87,10 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
     path = Path(path)
     _check_finished(path)
     try:
-        task = recorded_task(path) if task is None else task
+        task = task or recorded_task(path)
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
+            task = task or reported_task(reader) or BALANCE
             collector = partial(_Collector, reader, namespace, task, panda() if robot is None else robot, every_tick)
             with suppress(OutOfOrder):
                 return _by_chunks(collector()).finish(path)

@@ -1,12 +1,15 @@
 """Which task a bag was recorded of."""
 
 import json
+from itertools import islice
 from pathlib import Path
+from typing import Any
 
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
+from rosbags.highlevel import AnyReader
+from shared_control import contract
 from shared_control.plugins import TASKS, load
-from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 
 from .files import BagReadError
@@ -18,8 +21,12 @@ RECORD = 'shared_control_session'
 values the files' text."""
 
 
-def recorded_task(bag: Path) -> Task:
-    """The task of a session's bag, a rosbag2 folder or a single MCAP file; ``balance`` when nothing names another.
+REPORTS_READ = 100
+"""Reports of nodes in which their task is looked for: each says it once a second."""
+
+
+def recorded_task(bag: Path) -> Task | None:
+    """The task of a session's bag, a rosbag2 folder or a single MCAP file; None when nothing that was kept names it.
 
     Raises:
         ValueError: there is no task of that name; the message lists the names.
@@ -33,8 +40,26 @@ def recorded_task(bag: Path) -> Task:
         name = json.loads(text).get('task')
     except (ValueError, AttributeError):
         name = None
-    task: Task = load(TASKS, name)() if isinstance(name, str) and name else BALANCE
-    return task
+    return load(TASKS, name)() if isinstance(name, str) and name else None
+
+
+def reported_task(reader: AnyReader) -> Task | None:
+    """The task that simulator or controller reported on /diagnostics of an open bag; None when none did.
+
+    Raises:
+        ValueError: there is no task of that name; the message lists the names.
+    """
+    reports = [connection for connection in reader.connections
+               if connection.topic.endswith(contract.DIAGNOSTICS.full_name)]
+    for connection, _, raw in islice(reader.messages(reports), REPORTS_READ) if reports else ():
+        try:
+            message: Any = reader.deserialize(raw, connection.msgtype)
+        except Exception:  # garbled: anybody can have published it, and rosbags raises errors of many kinds
+            continue
+        names = [value.value for status in message.status for value in status.values if value.key == 'task']
+        if names:
+            return load(TASKS, names[0])()
+    return None
 
 
 def session_record(bag: Path) -> dict[str, str]:

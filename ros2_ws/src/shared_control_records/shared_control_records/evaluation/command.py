@@ -66,6 +66,7 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
     from shared_control_learning.evaluation.run import count_episodes, run_protocol
     from tqdm import tqdm
 
+    from ..plotting.plot import origin, write_captions
     from .figures import plots
     from .tables import as_json, by_test, text_table, write_csv
 
@@ -88,9 +89,10 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
     if args.output:
         args.output.mkdir(parents=True, exist_ok=True)
         write_csv(results, args.output)
-        for tests in by_test(results).values():
-            for plot in plots(tests):
-                plot.save(args.output)
+        found = [plot for tests in by_test(results).values() for plot in plots(tests)]
+        write_captions(found, args.output / f'{args.protocol}_captions.md')
+        for plot in found:
+            plot.save(args.output, origin(seed))
         print(f'Tracks and figures are in {args.output}', file=prose(args.json))
     return 0
 

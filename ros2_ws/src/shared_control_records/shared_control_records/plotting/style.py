@@ -22,8 +22,13 @@ STYLE: dict[Any, Any] = {
     'xtick.color': FAINT, 'ytick.color': FAINT, 'xtick.labelcolor': INK, 'ytick.labelcolor': INK,
     'axes.spines.top': False, 'axes.spines.right': False, 'axes.grid': True, 'grid.color': '#e4e7eb',
     'grid.linewidth': 0.8, 'axes.axisbelow': True, 'lines.linewidth': 1.8, 'lines.solid_capstyle': 'round',
-    'legend.frameon': False, 'legend.fontsize': 9.5}
-"""For ``matplotlib.rc_context``."""
+    'legend.frameon': False, 'legend.fontsize': 9.5, 'pdf.fonttype': 42}
+"""For ``matplotlib.rc_context``: figures to look at on a screen."""
+
+PAPER: dict[Any, Any] = {
+    **STYLE, 'font.size': 8, 'axes.titlesize': 8.5, 'axes.titlepad': 6, 'legend.fontsize': 7.5, 'lines.linewidth': 1.3,
+    'lines.markersize': 4.5}
+"""Likewise: figures as wide as a page or a column, as they are."""
 
 
 def say_empty(axes: Axes, text: str) -> None:

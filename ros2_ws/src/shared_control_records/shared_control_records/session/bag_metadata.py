@@ -8,9 +8,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 from shared_control import contract
 from shared_control.files import write_atomically
+from shared_control.rates import POLICY_PERIOD
 from shared_control_learning.episode_table import BROKEN_OFF
 
 from ..bag.ball_tracks import EpisodeTrack, broken_off, episode_tracks
@@ -81,7 +83,16 @@ def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:
     return EpisodeRow(
         number=track.number, phase=track.phase, seconds=float(track.seconds[-1]),
         episode_return=float(returns.values[ended]) if ended < len(returns.values) else None,
-        fallen=track.failed, human_share=float(shares.values[shared]) if shared >= 0 else None)
+        fallen=track.failed, human_share=float(shares.values[shared]) if shared >= 0 else None,
+        intervention_rate=_intervention_rate(bag, track))
+
+
+def _intervention_rate(bag: Bag, track: EpisodeTrack) -> float | None:
+    """Part of an episode's policy steps in which a moment of the human counted."""
+    if not len(bag.human_applied.moment):
+        return None
+    stamps = np.arange(track.start_ns, track.end_ns, round(POLICY_PERIOD * 1e9))
+    return float((bag.human_applied.moment_at(stamps) != 0.0).any(axis=1).mean())
 
 
 def _files(folder: SessionFolder) -> tuple[Path, ...]:

@@ -19,7 +19,9 @@ class EpisodeRow:
     episode_return: float | None
     fallen: bool | None
     human_share: float | None
-    """Mean of |M_yh| / (|M_yh| + |M_yai|), 0..1"""
+    """Mean of |human| / (|human| + |robot|) over the moments of the steps, 0..1"""
+    intervention_rate: float | None = None
+    """Part of the steps in which the human gave a moment, 0..1"""
 
 
 def read_episodes(path: Path) -> list[EpisodeRow]:
@@ -38,7 +40,8 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
                 rows.append(EpisodeRow(
                     number=int(row['episode']), phase=row['phase'], seconds=_number(row, 'seconds'),
                     episode_return=_number(row, 'return'), fallen=None if fallen is None else bool(fallen),
-                    human_share=_number(row, 'human_share')))
+                    human_share=_number(row, 'human_share'),
+                    intervention_rate=_number(row, 'intervention_rate')))
             except (KeyError, ValueError, TypeError) as error:
                 raise ValueError(f'{path}, line {line}: no usable episode ({error!r})') from error
     return rows
@@ -48,9 +51,10 @@ def write_episodes(rows: list[EpisodeRow], path: Path) -> None:
     """Write a table that :func:`read_episodes` reads; what is None stays empty."""
     text = io.StringIO(newline='')
     writer = csv.writer(text)
-    writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share'))
+    writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share', 'intervention_rate'))
     writer.writerows((row.number, row.phase, row.seconds, row.episode_return,
-                      None if row.fallen is None else int(row.fallen), row.human_share) for row in rows)
+                      None if row.fallen is None else int(row.fallen), row.human_share, row.intervention_rate)
+                     for row in rows)
     write_atomically(path, text.getvalue().encode())
 
 

@@ -35,13 +35,14 @@ class SessionFolder(RunFolder):
         self.summary = path / 'summary.json'
         """Figures of the session."""
         self.picture = path / 'picture.png'
-        """What happened, at a glance."""
+        """What happened, at a glance; as SVG and PDF beside it."""
         self.report = path / 'report.html'
         """The report, self-contained."""
         self.ending = path / 'ending.json'
         """What is being done after the teaching; there until the session is over, for its page."""
         own = (self.bag, self.learner, self.logs, self.given_parameters, self.parameters, self.settings, self.test,
-               self.summary, self.picture, self.report, self.ending)
+               self.summary, self.picture, self.picture.with_suffix('.svg'), self.picture.with_suffix('.pdf'),
+               self.report, self.ending)
         super().__init__(path, 'session', [child.name for child in own], [self.bag.name, self.settings.name])
 
     @classmethod

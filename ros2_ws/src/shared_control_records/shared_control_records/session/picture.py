@@ -1,43 +1,59 @@
 """One picture of what happened in a session (``picture.png``)."""
 
+import io
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_hex, to_rgb
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Bbox
+from PIL import Image
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
 
 from ..bag.ball_tracks import EpisodeTrack
 from ..bag.reader import Bag
+from ..plotting.plot import Sheet
 from ..plotting.style import AGENT, BAD, FAINT, GOOD, HUMAN, SEQUENCE, STYLE, cross, say_empty
 from .episodes import EpisodeRow
 from .final_test import FinalTest
 from .from_above import draw_track, draw_tray
 
-ERROR_SHOWN = 25.0
-"""cm; the tray's ends are 20 cm from its centre."""
+BEYOND = 1.25
+"""Errors are drawn up to this many times the half length of the tray."""
+DPI = 110
 ENDS_SHOWN = 4
 """This many of the first and of the last stand out of many episodes."""
 MOMENT_BINS = 1500
 """Across the width of the picture."""
 
 
-def draw_picture(path: Path, title: str, bag: Bag | None, tracks: Sequence[EpisodeTrack],
-                 rows: Sequence[EpisodeRow], test: FinalTest | None, task: Task) -> None:
-    """Draw what there is of a session; a plot without data says so.
+@dataclass(frozen=True)
+class Panel:
+    """A part of the picture, for a page that shows them one by one."""
+
+    name: str
+    caption: str
+    """What is seen, with units."""
+    png: bytes
+    wide: bool = False
+    """Whether it needs the whole width of a page."""
+
+
+def draw_picture(path: Path, title: str, footer: str, bag: Bag | None, tracks: Sequence[EpisodeTrack],
+                 rows: Sequence[EpisodeRow], test: FinalTest | None, task: Task) -> list[Panel]:
+    """Draw what there is of a session; a plot without data says so. Gives the parts of the picture.
 
     Args:
-        path: of the PNG.
+        path: of the PNG; an SVG and a PDF are written beside it.
         title: who taught whom.
+        footer: where it comes from (:func:`shared_control_records.plotting.plot.origin`).
         tracks: finished episodes; taught ones are drawn.
         rows: table of episodes; taught ones are drawn.
         task: what was learned; with two axes tracks are drawn from above.
@@ -45,36 +61,76 @@ def draw_picture(path: Path, title: str, bag: Bag | None, tracks: Sequence[Episo
     taught = [track for track in tracks if track.phase == 'teach']
     rows = [row for row in rows if row.phase == 'teach']
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(13, 11.5), layout=ConstrainedLayoutEngine(
-            w_pad=0.12, h_pad=0.12, hspace=0.04, wspace=0.03))
-        FigureCanvasAgg(figure)
+        sheet = Sheet(13, 11.5, w_pad=0.12, h_pad=0.12, hspace=0.04, wspace=0.03)
+        figure = sheet.content
         figure.suptitle(title, x=0.01, ha='left', fontsize=15, fontweight='bold')
         grid = figure.add_gridspec(4, 6, height_ratios=(3.2, 1.15, 1.15, 2.2))
         lessons, alone = figure.add_subplot(grid[0, :3]), figure.add_subplot(grid[0, 3:])
         fallen = {row.number for row in rows if row.fallen}
         if len(task.axes) == 1:
             alone.sharey(lessons)
-            _draw_lessons(lessons, taught, fallen)
-            _draw_test_tracks(alone, test)
+            _draw_lessons(lessons, task, taught, fallen)
+            _draw_test_tracks(alone, task, test)
         else:
             _draw_lessons_from_above(lessons, task, taught, fallen)
             _draw_test_from_above(alone, task, test)
         human = figure.add_subplot(grid[1, :])
         agent = figure.add_subplot(grid[2, :], sharex=human, sharey=human)
         _draw_moments(human, agent, bag, taught)
-        _draw_returns(figure.add_subplot(grid[3, :2]), rows)
-        _draw_shares(figure.add_subplot(grid[3, 2:4]), rows)
-        _draw_test_results(figure.add_subplot(grid[3, 4:]), test)
-        figure.savefig(path, dpi=110)
+        returns, shares, results = (figure.add_subplot(grid[3, index:index + 2]) for index in (0, 2, 4))
+        _draw_returns(returns, rows)
+        _draw_shares(shares, rows)
+        _draw_test_results(results, test)
+        sheet.save(path.with_suffix(''), footer, title, dpi=DPI)
+        scale = [axes for axes in figure.axes if axes.get_label() == '<colorbar>']
+        parts = (('lessons', [lessons, *scale], False), ('alone', [alone], False), ('moments', [human, agent], True),
+                 ('returns', [returns], False), ('shares', [shares], False), ('results', [results], False))
+        captions = _captions(task, taught, rows, test)
+        return [Panel(name, captions[name], _cut(sheet, path, axes), wide) for name, axes, wide in parts]
 
 
-def _draw_lessons(axes: Axes, taught: list[EpisodeTrack], fallen: set[int]) -> None:
+def _captions(task: Task, taught: Sequence[EpisodeTrack], rows: Sequence[EpisodeRow], test: FinalTest | None
+              ) -> dict[str, str]:
+    above = len(task.axes) > 1
+    how = 'from above' if above else 'its position error over time (cm)'
+    count = '1 episode' if len(taught) == 1 else f'{len(taught)} episodes'
+    radius = f'{100 * task.scene.goal_radius:g} cm'
+    tested = 'The robot was not tested alone.' if test is None else (
+        f'The robot alone: the ball in {len(test.episodes)} tests, {how}; blue-green: a success, red: none, x: the '
+        f'ball fell. {test.successes} of {len(test.episodes)} succeed.')
+    return {
+        'lessons': f'Taught: the ball in {count}, {how}; dark: late episodes, x: the ball fell.'
+                   + (f' Green: within {radius} of the goal.' if not above else ' Green circle: the goal.'),
+        'alone': tested,
+        'moments': "Moments on the tray as the controller applied them (N m), over the robot's time in the episodes "
+                   '(s). Pale: all values of a short span; line: mean of 0.5 s.',
+        'returns': f'Return (sum of rewards, no unit) of {len(rows)} episodes; x: the ball fell.',
+        'shares': 'Human share of the moment by episode (%): mean of |human| / (|human| + |robot|) over its steps.',
+        'results': 'The robot alone: mean |position error| of the last 3 s (cm) over that at the start (cm); a '
+                   f'success stays under {radius}, at rest. o: success, triangle: kept, x: the ball fell (at the '
+                   'edge).'}
+
+
+def _cut(sheet: Sheet, path: Path, parts: Sequence[Axes]) -> bytes:
+    """A part of the picture that was written to ``path``, with its titles and labels."""
+    box = Bbox.union([box for axes in parts for box in [axes.get_tightbbox()] if box is not None])
+    scale = DPI / sheet.figure.dpi
+    with Image.open(path.with_suffix('.png')) as picture:
+        left, right = (round(scale * edge) for edge in (box.x0 - 6, box.x1 + 6))
+        top, bottom = (picture.height - round(scale * edge) for edge in (box.y1 + 6, box.y0 - 6))
+        cut = io.BytesIO()
+        picture.convert('RGB').crop((max(left, 0), max(top, 0), min(right, picture.width), bottom)).save(cut, 'PNG')
+    return cut.getvalue()
+
+
+def _draw_lessons(axes: Axes, task: Task, taught: list[EpisodeTrack], fallen: set[int]) -> None:
+    shown = _error_shown(task)
     axes.set(title='Taught: the ball in each episode', xlabel='Time in the episode (s)',
-             ylabel='Ball position error (cm)', ylim=(-ERROR_SHOWN, ERROR_SHOWN))
+             ylabel='Ball position error (cm)', ylim=(-shown, shown))
     if not taught:
         say_empty(axes, 'no finished episode in the bag')
         return
-    _draw_centre(axes)
+    _draw_goal(axes, task)
     numbers = [track.number for track in taught]
     colours = Normalize(min(numbers), max(max(numbers), min(numbers) + 1))
     for index, track in enumerate(taught):
@@ -82,7 +138,7 @@ def _draw_lessons(axes: Axes, taught: list[EpisodeTrack], fallen: set[int]) -> N
         stands_out = len(taught) <= 2 * ENDS_SHOWN or not ENDS_SHOWN <= index < len(taught) - ENDS_SHOWN
         axes.plot(track.seconds, 100 * track.position_error, color=colour, alpha=0.9 if stands_out else 0.15)
         if track.number in fallen:
-            axes.plot(track.seconds[-1], np.clip(100 * track.position_error[-1], -ERROR_SHOWN, ERROR_SHOWN),
+            axes.plot(track.seconds[-1], np.clip(100 * track.position_error[-1], -shown, shown),
                       'x', color=colour, markeredgewidth=2.5, markersize=9, clip_on=False)
     if fallen:
         axes.legend(handles=[cross(FAINT, 'the ball fell')], loc='lower right')
@@ -90,21 +146,22 @@ def _draw_lessons(axes: Axes, taught: list[EpisodeTrack], fallen: set[int]) -> N
         _draw_scale(axes, colours)
 
 
-def _draw_test_tracks(axes: Axes, test: FinalTest | None) -> None:
+def _draw_test_tracks(axes: Axes, task: Task, test: FinalTest | None) -> None:
     axes.set(title='Alone: the final test', xlabel='Time in the episode (s)')
-    axes.tick_params(labelleft=False)
+    axes.set_ylabel('Ball position error (cm)')
     tracks = [episode for episode in test.episodes if episode.track] if test else []
     if test is None or not tracks:
         say_empty(axes, 'not tested' if test is None else 'no tracks were kept; results below')
         return
     axes.set_title(f'Alone: {test.successes} of {len(test.episodes)} tests succeed')
-    _draw_centre(axes)
+    _draw_goal(axes, task)
+    shown = _error_shown(task)
     for episode in tracks:
         seconds = np.arange(len(episode.track)) * test.sample_period
         colour = GOOD if episode.success else BAD
         axes.plot(seconds, 100 * np.array(episode.track), color=colour, alpha=0.75, linewidth=1.4)
         if not episode.kept:
-            axes.plot(seconds[-1], np.clip(100 * episode.track[-1], -ERROR_SHOWN, ERROR_SHOWN), 'x', color=colour,
+            axes.plot(seconds[-1], np.clip(100 * episode.track[-1], -shown, shown), 'x', color=colour,
                       markeredgewidth=2.5, markersize=9, clip_on=False)
     if not all(episode.kept for episode in tracks):
         axes.legend(handles=[cross(BAD, 'the ball fell')], loc='lower right')
@@ -145,10 +202,16 @@ def _draw_scale(axes: Axes, colours: Normalize) -> None:
     bar.outline.set_visible(False)  # type: ignore[operator]
 
 
-def _draw_centre(axes: Axes) -> None:
-    axes.axhspan(-2, 2, color=GOOD, alpha=0.12, linewidth=0)
-    axes.annotate('centre ± 2 cm', (0.995, -2), xycoords=('axes fraction', 'data'), xytext=(0, -3),
-                  textcoords='offset points', ha='right', va='top', fontsize=8.5, color=GOOD)
+def _error_shown(task: Task) -> float:
+    """The largest error that is drawn, cm."""
+    return 100 * BEYOND * task.scene.half_length
+
+
+def _draw_goal(axes: Axes, task: Task) -> None:
+    radius = 100 * task.scene.goal_radius
+    axes.axhspan(-radius, radius, color=GOOD, alpha=0.12, linewidth=0)
+    axes.annotate(f'green: within {radius:g} cm of the goal', (0.995, 0.985), xycoords='axes fraction', ha='right',
+                  va='top', fontsize=8.5, color=GOOD)
     axes.margins(x=0.01)
 
 
@@ -219,7 +282,7 @@ def _moving_mean(moment: np.ndarray) -> np.ndarray:
 
 
 def _draw_returns(axes: Axes, rows: list[EpisodeRow]) -> None:
-    axes.set(title='Return by episode', xlabel='Episode', ylabel='Sum of rewards')
+    axes.set(title='Return by episode', xlabel='Episode', ylabel='Return (sum of rewards)')
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     points = [(row.number, row.episode_return, row.fallen) for row in rows if row.episode_return is not None]
     if not points:
@@ -232,7 +295,7 @@ def _draw_returns(axes: Axes, rows: list[EpisodeRow]) -> None:
     if any(fell):
         down = np.array([bool(f) for f in fell])
         axes.plot(np.array(numbers)[down], np.array(returns)[down], 'x', color=AGENT, markeredgewidth=2.2, markersize=7)
-        axes.legend(handles=[cross(AGENT, 'the ball fell')], loc='best', frameon=True)
+        axes.legend(handles=[cross(AGENT, 'the ball fell')], loc='lower right', bbox_to_anchor=(1, 1), borderpad=0)
     axes.margins(x=0.08, y=0.12)
 
 
@@ -253,7 +316,7 @@ def _draw_shares(axes: Axes, rows: list[EpisodeRow]) -> None:
 
 
 def _draw_test_results(axes: Axes, test: FinalTest | None) -> None:
-    axes.set(title='Alone: error at the end', xlabel='Ball position error at the start (cm)',
+    axes.set(title='Alone: error at the end', xlabel='Position error at the start (cm)',
              ylabel='Mean |error| of the last 3 s (cm)')
     if test is None or not test.episodes:
         say_empty(axes, 'not tested')

@@ -2,20 +2,23 @@
 
 import base64
 import json
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import jinja2
 from markupsafe import Markup
 from shared_control.files import write_atomically
+from shared_control.tasks.balance import BALANCE
 
 from ..bag.ball_tracks import episode_tracks
 from ..bag.reader import Bag, BagReadError, read_bag
 from ..bag.task import recorded_task
+from ..plotting.plot import origin
 from .episodes import EpisodeRow, read_episodes
 from .final_test import FinalTest, load_test
 from .folder import SessionFolder
-from .picture import draw_picture
+from .picture import Panel, draw_picture
 from .summary import Summary, summarize
 
 _PAGE = Path(__file__).parent / 'page.html'
@@ -40,23 +43,24 @@ def write_report(folder: SessionFolder, restarts: int | None = None, bag: Bag | 
         restarts = (folder.read_json(folder.summary) or {}).get('restarts')
     bag, bag_error = (bag, None) if bag else _read(folder)
     rows, test = read_episodes(folder.episodes), load_test(folder.test)
-    task = bag.task if bag else recorded_task(folder.bag)
+    task = bag.task if bag else recorded_task(folder.bag) or BALANCE
     summary = summarize(folder, task, bag, bag_error, rows, test, restarts)
     tracks = episode_tracks(bag) if bag else []
-    draw_picture(folder.picture, _title(summary), bag, tracks, rows, test, task)
+    panels = draw_picture(folder.picture, _title(summary), _origin(summary), bag, tracks, rows, test, task)
     write_atomically(folder.summary, (json.dumps(summary.as_dict(), indent=2) + '\n').encode())
-    write_atomically(folder.report, render_page(summary, rows, test, folder.picture.read_bytes()).encode())
+    write_atomically(folder.report, render_page(summary, rows, test, panels).encode())
     return summary
 
 
-def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None, picture: bytes) -> str:
-    """The report as one HTML page that needs no other file. ``picture`` is a PNG."""
+def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None, panels: list[Panel]) -> str:
+    """The report as one HTML page that needs no other file."""
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     environment.filters['number'] = _number
+    environment.filters['percent'] = lambda share: _number(None if share is None else 100 * share, '.0f')
+    environment.filters['base64'] = lambda content: base64.b64encode(content).decode()
     return environment.from_string(_PAGE.read_text()).render(
         css=Markup(STYLE_SHEET.read_text()), title=_title(summary), s=summary, rows=rows, test=test,
-        figures=_figures(summary), done=_done(summary), picture=base64.b64encode(picture).decode(),
-        alt='Ball in each episode, final test, moments of human and robot, return and human share by episode')
+        figures=_figures(summary), done=_done(summary), panels=panels, origin=_origin(summary))
 
 
 def _read(folder: SessionFolder) -> tuple[Bag | None, str | None]:
@@ -67,6 +71,11 @@ def _read(folder: SessionFolder) -> tuple[Bag | None, str | None]:
         return read_bag(folder.bag), None
     except BagReadError as error:
         return None, str(error)
+
+
+def _origin(summary: Summary) -> str:
+    """Where report and picture come from: version, seed, day of the recording."""
+    return origin(summary.seed, datetime.fromisoformat(summary.recorded).date() if summary.recorded else None)
 
 
 def _tutor(summary: Summary) -> str:

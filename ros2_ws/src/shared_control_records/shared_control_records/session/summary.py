@@ -1,6 +1,7 @@
 """``summary.json``: the figures of a session by name."""
 
 from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 from shared_control.tasks.task import Task
@@ -22,6 +23,9 @@ class Summary:
 
     task: str
     preset: str | None
+    seed: int | None
+    recorded: str | None
+    """When the recording began, UTC, ISO 8601."""
     tutor: str | None
     simulated_tutor: bool | None
     """Whether the person at the keys was a model of one, in any part of the session."""
@@ -75,7 +79,9 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
     taught = [row for row in rows if row.phase == 'teach']
     broken_off = [row for row in rows if row.phase == BROKEN_OFF]
     return Summary(
-        task=task.name, preset=settings.get('preset'), tutor=tutor,
+        task=task.name, preset=settings.get('preset'), seed=settings.get('seed'),
+        recorded=f'{datetime.fromtimestamp(bag.start_ns // 1_000_000_000, UTC):%Y-%m-%dT%H:%M:%SZ}' if bag else None,
+        tutor=tutor,
         simulated_tutor=None if tutor is None else 'simulated' in tutor,
         duration_s=round((bag.end_ns - bag.start_ns) * 1e-9, 3) if bag else None,
         episodes_taught=len(taught) if folder.episodes.exists() else None,

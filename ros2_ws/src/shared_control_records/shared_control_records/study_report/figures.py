@@ -6,47 +6,40 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from matplotlib.figure import SubFigure
 from matplotlib.ticker import MaxNLocator
 from shared_control.control.references import FREQUENCIES
 from shared_control_learning.evaluation.perturbation import PUSHES
 from shared_control_learning.evaluation.result import ProtocolResult
 
+from ..plotting.plot import Sheet
 from ..plotting.style import AGENT, FAINT, HUMAN, INK, say_empty
 from ..study.plan import PERSON
 from ..study.result import RunResult
-from .measures import BEST, TRAY_END, Study, times
-from .statistics import survival
+from .measures import BEST, Study, times
+from .statistics import ENOUGH, survival
 
 COLOURS = ('#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#56B4E9')
 """Colours of conditions, in the plan's order (Okabe and Ito)."""
-RETURN_SHOWN = (-1500.0, 750.0)
-"""Returns below are drawn at the edge: an episode in which the ball falls costs 5000."""
 LOW_HIGH_SHARE = 3
 """The best and the worst third of real participants count as high and low performers."""
 
-Draw = Callable[[Figure, Study], pd.DataFrame]
+Draw = Callable[[SubFigure, Study], pd.DataFrame]
 
 
 @dataclass(frozen=True)
-class Plot:
+class StudyPlot:
     """A figure of the report."""
 
     name: str
     """Name of its files."""
     title: str
+    caption: str
+    """What is drawn, with units."""
     thesis: str
     """What the thesis' own figure shows."""
     draw: Draw
     """Draws it, and gives the numbers."""
-
-
-def new_figure() -> Figure:
-    """An empty figure of the report's size."""
-    figure = Figure(figsize=(10.5, 4.0), layout='constrained')
-    FigureCanvasAgg(figure)
-    return figure
 
 
 def colour_of(study: Study, condition: str) -> str:
@@ -54,10 +47,11 @@ def colour_of(study: Study, condition: str) -> str:
     return COLOURS[[c.name for c in study.plan.conditions].index(condition) % len(COLOURS)]
 
 
-def draw_returns(figure: Figure, study: Study) -> pd.DataFrame:
+def draw_returns(figure: SubFigure, study: Study) -> pd.DataFrame:
     """Fig. 14: return by episode, every run, the best of each condition in bold."""
     axes = figure.subplots()
-    axes.set(xlabel='Episode of training', ylabel='Return', ylim=RETURN_SHOWN)
+    low, high = _returns_shown(study)
+    axes.set(xlabel='Episode of training', ylabel='Return (sum of rewards)', ylim=(low, high))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     rows = []
     for condition in study.conditions:
@@ -67,16 +61,16 @@ def draw_returns(figure: Figure, study: Study) -> pd.DataFrame:
             numbers = [row['episode'] for row in run.episodes]
             returns = np.array([row['return'] for row in run.episodes])
             is_best = run is best
-            axes.plot(numbers, np.clip(returns, *RETURN_SHOWN), color=colour, alpha=1.0 if is_best else 0.13,
+            axes.plot(numbers, np.clip(returns, low, high), color=colour, alpha=1.0 if is_best else 0.13,
                       linewidth=2.2 if is_best else 1.0, zorder=3 if is_best else 2, marker='o' if is_best else '',
                       markersize=3.5, label=f'{condition}, best (participant {run.participant})' if is_best else None)
             rows += [{'condition': condition, 'participant': run.participant, 'episode': number, 'return': value}
                      for number, value in zip(numbers, returns, strict=True)]
-    figure.legend(loc='outside right upper')  # wherever it lay within, a curve would run below it
+    figure.legend(loc='outside lower center', ncols=3)  # wherever it lay within, a curve would run below it
     return pd.DataFrame(rows)
 
 
-def draw_episodes(figure: Figure, study: Study) -> pd.DataFrame:
+def draw_episodes(figure: SubFigure, study: Study) -> pd.DataFrame:
     """Fig. 15: episodes to skilled, every run and the median; and how many are still waiting."""
     dots, curves = figure.subplots(1, 2)
     rows = []
@@ -97,12 +91,14 @@ def draw_episodes(figure: Figure, study: Study) -> pd.DataFrame:
         rows += [{'condition': condition, 'participant': run.participant, 'episodes': episodes, 'skilled': skilled}
                  for run, episodes, skilled in zip(study.of(condition), reached.episodes, reached.reached, strict=True)]
     longest = max(row['episodes'] for row in rows)
-    dots.set(title='Episodes to skilled; bar: median', ylabel='Episodes', ylim=(0, 1.25 * longest),  # room for a legend
+    dots.set(title='Episodes to skilled', ylabel='Episodes', ylim=(0, 1.25 * longest),  # room for a legend
              xlim=(-0.5, len(study.conditions) - 0.5))
     dots.set_xticks(range(len(study.conditions)), study.conditions)
+    dots.plot([], [], 'o', color=FAINT, label='skilled')
     dots.plot([], [], '^', color=FAINT, markerfacecolor='none', label='not skilled when training ended')
+    dots.plot([], [], color=INK, linewidth=2.5, label='median')
     dots.legend(loc='upper left')
-    curves.set(title='Not yet skilled (Kaplan-Meier, 95 %)', xlabel='Episodes', ylabel='Share of runs (%)',
+    curves.set(title='Not yet skilled', xlabel='Episodes', ylabel='Share of runs (%)',
                ylim=(0, 103))
     curves.legend(loc='best')
     return pd.DataFrame(rows)
@@ -110,7 +106,7 @@ def draw_episodes(figure: Figure, study: Study) -> pd.DataFrame:
 
 def draw_test(test: str, track: str) -> Draw:
     """Figs. 16 to 19: mean of a track over the policies of each condition, +- SEM; the best five, and all."""
-    def draw(figure: Figure, study: Study) -> pd.DataFrame:
+    def draw(figure: SubFigure, study: Study) -> pd.DataFrame:
         panels = [(BEST, f'Best {BEST} of each condition'), (None, 'All')]
         if all(len(study.of(condition)) <= BEST for condition in study.conditions):
             panels = panels[1:]  # the best five are all
@@ -124,9 +120,10 @@ def draw_test(test: str, track: str) -> Draw:
                 tested = [run.tests[test] for run in runs if test in run.tests]
                 if not tested:
                     continue
-                policies = 100 * np.array([_mean_track(result, track) for result in tested])
+                lost = study.lost(runs[0])
+                policies = 100 * np.array([_mean_track(result, track, lost) for result in tested])
                 mean, sem = _mean_and_sem(policies)
-                _line(axes, tested[0].seconds, mean, sem, colour_of(study, condition),
+                _line(axes, tested[0].seconds, mean, _if_enough(sem, len(tested)), colour_of(study, condition),
                       f'{condition} (n = {len(tested)})')
                 rows.append(pd.DataFrame({
                     'policies': title, 'condition': condition, 'seconds': tested[0].seconds, 'mean': mean, 'sem': sem,
@@ -139,8 +136,8 @@ def draw_test(test: str, track: str) -> Draw:
 
 
 def draw_actions(first: str, second: str) -> Draw:
-    """Figs. 20 and 21: mean |moment| of human and agent by episode of training, for two groups of participants."""
-    def draw(figure: Figure, study: Study) -> pd.DataFrame:
+    """Figs. 20 and 21: mean |moment| of human and robot by episode of training, for two groups of participants."""
+    def draw(figure: SubFigure, study: Study) -> pd.DataFrame:
         panels = figure.subplots(1, 2, sharey=True)
         condition = next((c.name for c in study.plan.conditions if c.taught and study.of(c.name)), None)
         rows = []
@@ -150,9 +147,9 @@ def draw_actions(first: str, second: str) -> Draw:
             runs = _group(study, condition, group) if condition else []
             axes.set(title=f'{group.capitalize()} performers (n = {len(runs)})', xlabel='Episode of training')
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-            for who, colour in (('human', HUMAN), ('agent', AGENT)) if runs else ():
-                numbers, mean, sem, count = _by_episode(runs, f'mean_abs_{who}')
-                _line(axes, numbers, mean, sem, colour, who)
+            for who, column, colour in (('human', 'human', HUMAN), ('robot', 'agent', AGENT)) if runs else ():
+                numbers, mean, sem, count = _by_episode(runs, f'mean_abs_{column}')
+                _line(axes, numbers, mean, _if_enough(sem, count), colour, f'{who}, mean')
                 rows.append(pd.DataFrame({'group': group, 'who': who, 'condition': condition, 'episode': numbers,
                                           'mean': mean, 'sem': sem, 'n': count}))
             _legend(axes, 'no such participants in this study')
@@ -166,7 +163,7 @@ def draw_trajectory(frequency: float) -> Draw:
     """Figs. 22 to 24: position and velocity error on a moving tray; the best policy of each condition."""
     name = f'trajectory {frequency:g} Hz'
 
-    def draw(figure: Figure, study: Study) -> pd.DataFrame:
+    def draw(figure: SubFigure, study: Study) -> pd.DataFrame:
         rows = []
         panels = figure.subplots(1, 2)
         for axes, track in zip(panels, ('position_error', 'velocity_error'), strict=True):
@@ -187,18 +184,27 @@ def draw_trajectory(frequency: float) -> Draw:
     return draw
 
 
-def _mean_track(result: ProtocolResult, track: str) -> np.ndarray:
-    """Mean over the episodes of a policy; (steps,). A ball that fell stays at the tray's end, at rest."""
+def _returns_shown(study: Study) -> tuple[float, float]:
+    """From the least to the greatest return of an episode in which the ball is kept, and a little more. One in which it
+    falls costs thousands: it is drawn at the edge."""
+    rows = [row for run in study.runs for row in run.episodes]
+    kept = [row['return'] for row in rows if not row['fallen']] or [row['return'] for row in rows]
+    margin = 0.05 * (max(kept) - min(kept) or 1.0)
+    return min(kept) - margin, max(kept) + margin
+
+
+def _mean_track(result: ProtocolResult, track: str, lost: float) -> np.ndarray:
+    """Mean over the episodes of a policy; (steps,). A ball that fell stays at rest ``lost`` m off."""
     if track != 'position_error':
         return np.nan_to_num(getattr(result, track), nan=0.0).mean(axis=0)
     last = np.sign([row[np.isfinite(row)][-1:].sum() for row in result.position_error])
-    return np.where(np.isnan(result.position_error), TRAY_END * last[:, None], result.position_error).mean(axis=0)
+    return np.where(np.isnan(result.position_error), lost * last[:, None], result.position_error).mean(axis=0)
 
 
 def _mean_and_sem(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard error of the mean over the rows; no error of a single one."""
+    """Mean and standard error of the mean over the rows; of a single one the error is not known (nan)."""
     count = len(values)
-    sem = values.std(axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.zeros(values.shape[1])
+    sem = values.std(axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.full(values.shape[1], np.nan)
     return values.mean(axis=0), sem
 
 
@@ -212,7 +218,7 @@ def _by_episode(runs: list[RunResult], column: str) -> tuple[np.ndarray, np.ndar
     count = np.isfinite(table).sum(axis=0)
     mean = np.nanmean(table, axis=0)
     spread = np.sqrt(np.nansum((table - mean) ** 2, axis=0) / np.maximum(count - 1, 1))
-    return np.arange(1, length + 1), mean, np.where(count > 1, spread / np.sqrt(count), 0.0), count
+    return np.arange(1, length + 1), mean, np.where(count > 1, spread / np.sqrt(count), np.nan), count
 
 
 def _group(study: Study, condition: str, group: str) -> list[RunResult]:
@@ -225,14 +231,21 @@ def _group(study: Study, condition: str, group: str) -> list[RunResult]:
     return {'high': ranked[:third], 'low': ranked[len(ranked) - third:]}.get(group, [])
 
 
+def _if_enough(sem: np.ndarray, count: int | np.ndarray) -> np.ndarray:
+    """A standard error where there are enough to tell it from: a band of one or two looks certain."""
+    return np.where(np.asarray(count) >= ENOUGH, sem, np.nan)
+
+
 def _line(axes: Axes, x: np.ndarray, mean: np.ndarray, sem: np.ndarray, colour: str, label: str) -> None:
     axes.plot(x, mean, color=colour, label=label)
-    axes.fill_between(x, mean - sem, mean + sem, color=colour, alpha=0.2, linewidth=0)
+    if np.isfinite(sem).any():
+        axes.fill_between(x, mean - sem, mean + sem, color=colour, alpha=0.2, linewidth=0)
 
 
 def _mark_pushes(axes: Axes, test: str) -> None:
     for start, end in PUSHES if test == 'perturbation' else ():
-        axes.axvspan(start, end, color=FAINT, alpha=0.2, linewidth=0)
+        axes.axvspan(start, end, color=FAINT, alpha=0.2, linewidth=0,
+                     label='50 N push' if start == PUSHES[0][0] else None)
 
 
 def _legend(axes: Axes, otherwise: str) -> None:
@@ -247,38 +260,50 @@ def _label(track: str) -> str:
     return {'position_error': 'Ball position error (cm)', 'velocity_error': 'Ball velocity error (cm/s)'}[track]
 
 
-def plots() -> Iterator[Plot]:
+_RETURNS = ('Return (sum of rewards, no unit) by episode of every run; bold: the best run of each condition. Episodes '
+            'in which the ball fell lie at the lower edge.')
+_EPISODES = ('Left: episodes to skilled of every run, and the median of Kaplan and Meier. Right: share of the runs '
+             f'that are not skilled yet (%), with its 95 % interval where a condition has at least {ENOUGH} runs.')
+_TESTS = ('Mean over the n policies of a condition; band: plus and minus its standard error, where n is at least '
+          f'{ENOUGH}. A ball that has fallen counts as lying where the tray ends.')
+_MOMENTS = ('Mean |moment| of human and robot in an episode (N m), over the runs that had such an episode; band: plus '
+            f'and minus its standard error, where they are at least {ENOUGH}.')
+_TRAJECTORY = 'Position error (cm) and velocity error (cm/s) of the best policy of each condition, one episode each.'
+
+
+def plots() -> Iterator[StudyPlot]:
     """All figures, in the thesis' order."""
-    yield Plot('fig14_return', 'Fig. 14: return during training',
-               'Best of each: skilled after 45 episodes with a human, after about 600 alone.', draw_returns)
-    yield Plot('fig15_episodes', 'Fig. 15: episodes in which training is complete',
-               'Mean of the best five: 17 episodes with a human, 788 alone.', draw_episodes)
+    yield StudyPlot('fig14_return', 'Fig. 14: return during training', _RETURNS,
+                    'Best of each: skilled after 45 episodes with a human, after about 600 alone.', draw_returns)
+    yield StudyPlot('fig15_episodes', 'Fig. 15: episodes in which training is complete', _EPISODES,
+                    'Mean of the best five: 17 episodes with a human, 788 alone.', draw_episodes)
     for number, test, track, said in (
             (16, 'randomized', 'position_error', 'With a human near zero; alone the ball oscillates about the centre.'),
             (17, 'randomized', 'velocity_error', 'With a human the ball is kept at rest; alone it is not.'),
             (18, 'perturbation', 'position_error', 'Both regulate; alone varies more, above all while pushed.'),
             (19, 'perturbation', 'velocity_error', 'Spikes at the pushes alone; slowed down with a human.')):
-        yield Plot(f'fig{number}_{test}_{track.removesuffix("_error")}', f'Fig. {number}: {_TITLES[test, track]}', said,
-                   draw_test(test, track))
-    yield Plot('fig20_low_high', 'Fig. 20: moments of human and agent, low and high performers',
-               'Both begin with little, and do more after 25 episodes; the high performer varies less and hands over '
-               'after 35 episodes, the low one after 45.', draw_actions('low', 'high'))
-    yield Plot('fig21_expert_high', 'Fig. 21: moments of human and agent, expert and high performers',
-               'The expert acts from the first episode on; the robot is autonomous after the 9th.',
-               draw_actions('expert', 'high'))
+        yield StudyPlot(f'fig{number}_{test}_{track.removesuffix("_error")}', f'Fig. {number}: {_TITLES[test, track]}',
+                        _TESTS, said, draw_test(test, track))
+    yield StudyPlot('fig20_low_high', 'Fig. 20: moments of human and robot, low and high performers', _MOMENTS,
+                    'Both begin with little, and do more after 25 episodes; the high performer varies less and hands '
+                    'over after 35 episodes, the low one after 45.', draw_actions('low', 'high'))
+    yield StudyPlot('fig21_expert_high', 'Fig. 21: moments of human and robot, expert and high performers', _MOMENTS,
+                    'The expert acts from the first episode on; the robot is autonomous after the 9th.',
+                    draw_actions('expert', 'high'))
     for number, frequency in zip((22, 23, 24), FREQUENCIES, strict=True):
-        yield Plot(f'fig{number}_trajectory', f'Fig. {number}: on a tray that moves at {frequency:g} Hz',
-                   'The best policy taught by a human keeps both errors close to zero.', draw_trajectory(frequency))
+        yield StudyPlot(f'fig{number}_trajectory', f'Fig. {number}: on a tray that moves at {frequency:g} Hz',
+                        _TRAJECTORY, 'The best policy taught by a human keeps both errors close to zero.',
+                        draw_trajectory(frequency))
 
 
 _TITLES = {('randomized', 'position_error'): 'position error in the randomised test',
            ('randomized', 'velocity_error'): 'velocity error in the randomised test',
-           ('perturbation', 'position_error'): 'position error in the perturbation test (grey: 50 N pushes)',
-           ('perturbation', 'velocity_error'): 'velocity error in the perturbation test (grey: 50 N pushes)'}
+           ('perturbation', 'position_error'): 'position error in the perturbation test',
+           ('perturbation', 'velocity_error'): 'velocity error in the perturbation test'}
 
 
-def draw_all(study: Study) -> Iterable[tuple[Plot, Figure, pd.DataFrame]]:
+def draw_all(study: Study) -> Iterable[tuple[StudyPlot, Sheet, pd.DataFrame]]:
     """Every figure with its numbers."""
     for plot in plots():
-        figure = new_figure()
-        yield plot, figure, plot.draw(figure, study)
+        sheet = Sheet(7.1, 3.0)
+        yield plot, sheet, plot.draw(sheet.content, study)

@@ -1,19 +1,20 @@
 """What the report says of one run, as numbers; and a study's runs by condition."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pandas as pd
-from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
+from shared_control.wrench import AXIS_NAMES
 from shared_control_learning.evaluation.result import ProtocolResult
+from shared_control_learning.presets import preset_for
 
 from ..study.folder import StudyFolder
-from ..study.plan import Plan, load_plan
+from ..study.plan import Condition, Plan, load_plan
 from ..study.result import ResultError, RunResult, load_result
 from .statistics import Times
 
-TRAY_END = BALANCE.scene.half_length
-"""m: what the position error counts as once the ball has fallen; the tray ends there."""
 BEST = 5
 """Runs of a condition that the thesis compares (4.1)."""
 
@@ -43,7 +44,19 @@ class Study:
         By least mean |position error| in the perturbation test, which lasts 30 s as the test does by which the thesis
         ranks (4.1). Without that test, by the last return.
         """
-        return sorted(self.of(condition), key=_badness)[:count]
+        return sorted(self.of(condition), key=self._badness)[:count]
+
+    def task(self, condition: str) -> Task:
+        """What is learned in a condition."""
+        return _task(next(c for c in self.plan.conditions if c.name == condition))
+
+    def lost(self, run: RunResult) -> float:
+        """What the position error of a run counts as once the ball has fallen, m; see :func:`lost_error`."""
+        return lost_error(self.task(run.condition))
+
+    def _badness(self, run: RunResult) -> float:
+        test = run.tests.get('perturbation')
+        return -run.episodes[-1]['return'] if test is None else float(away(test, self.lost(run)).mean())
 
 
 def load_study(folder: StudyFolder) -> Study:
@@ -67,7 +80,7 @@ def load_study(folder: StudyFolder) -> Study:
 
 def run_table(study: Study) -> pd.DataFrame:
     """A row a run: who, what, and the measures of the tests; errors in cm and cm/s."""
-    return pd.DataFrame([_row(run) for run in study.runs])
+    return pd.DataFrame([_row(run, study.lost(run)) for run in study.runs])
 
 
 def times(runs: list[RunResult]) -> Times:
@@ -76,9 +89,18 @@ def times(runs: list[RunResult]) -> Times:
                  np.array([run.skilled is not None for run in runs], bool))
 
 
-def away(test: ProtocolResult) -> np.ndarray:
-    """|position error| of every episode and step, a fallen ball at the tray's end; (episodes, steps), m."""
-    return np.nan_to_num(np.abs(test.position_error), nan=TRAY_END)
+def lost_error(task: Task) -> float:
+    """What the position error counts as once the ball has fallen, m: where the tray ends, farthest from the goal."""
+    scene = task.scene
+    ends = np.array([scene.half_length, scene.half_width]) + np.abs(scene.goal)
+    moved = (('m_y', 0), ('m_x', 1))  # a moment about y moves the ball along x
+    along = [axis for name, axis in moved if AXIS_NAMES.index(name) in task.axes]
+    return float(np.linalg.norm(ends[along]))
+
+
+def away(test: ProtocolResult, lost: float) -> np.ndarray:
+    """|position error| of every episode and step, a fallen ball ``lost`` m off; (episodes, steps), m."""
+    return np.nan_to_num(np.abs(test.position_error), nan=lost)
 
 
 def trajectories(run: RunResult) -> list[ProtocolResult]:
@@ -86,12 +108,7 @@ def trajectories(run: RunResult) -> list[ProtocolResult]:
     return [test for name, test in run.tests.items() if name.startswith('trajectory')]
 
 
-def _badness(run: RunResult) -> float:
-    test = run.tests.get('perturbation')
-    return -run.episodes[-1]['return'] if test is None else float(away(test).mean())
-
-
-def _row(run: RunResult) -> dict[str, float | int | str | bool | None]:
+def _row(run: RunResult, lost: float) -> dict[str, float | int | str | bool | None]:
     fallen = [fell for test in run.tests.values() for fell in test.fallen]
     row: dict[str, float | int | str | bool | None] = {
         'condition': run.condition, 'taught': run.taught, 'participant': run.participant, 'group': run.group,
@@ -105,16 +122,25 @@ def _row(run: RunResult) -> dict[str, float | int | str | bool | None]:
     alone = run.tests.get('randomized')
     if alone is not None:
         row['success'] = float(alone.success.mean())
-        row['alone_error'] = 100 * float(away(alone)[:, -150:].mean())
+        row['alone_error'] = 100 * float(away(alone, lost)[:, -150:].mean())
         row['manipulability'] = float(np.nanmean(alone.manipulability))
     pushed = run.tests.get('perturbation')
     if pushed is not None:
-        row['pushed_error'] = 100 * float(away(pushed).mean())
+        row['pushed_error'] = 100 * float(away(pushed, lost).mean())
         row['pushed_kept'] = float(not pushed.fallen.any())
     if moving := trajectories(run):
-        row['moving_error'] = 100 * float(np.mean([away(test).mean() for test in moving]))
+        row['moving_error'] = 100 * float(np.mean([away(test, lost).mean() for test in moving]))
         row['moving_kept'] = float(np.mean([not test.fallen.any() for test in moving]))
     return row
+
+
+@cache
+def _task_of(task: str, preset: str) -> Task:
+    return preset_for(task, preset).task
+
+
+def _task(condition: Condition) -> Task:
+    return _task_of(condition.task, condition.preset)
 
 
 def _variance(run: RunResult, column: str) -> float | None:

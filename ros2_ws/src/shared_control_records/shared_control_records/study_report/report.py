@@ -1,7 +1,6 @@
-"""The report of a study: one page, its figures as SVG and PNG, its numbers as CSV."""
+"""The report of a study: one page, its figures as PNG, SVG and PDF, its numbers as CSV."""
 
 import base64
-import io
 import math
 from pathlib import Path
 from typing import Any
@@ -10,14 +9,14 @@ import jinja2
 import matplotlib
 import pandas as pd
 from markupsafe import Markup
-from matplotlib.figure import Figure
 from shared_control.files import write_atomically
 
-from ..plotting.style import STYLE
+from ..plotting.plot import origin
+from ..plotting.style import PAPER
 from ..session.report import STYLE_SHEET
 from ..study.folder import StudyFolder
 from .figures import draw_all
-from .measures import Study, load_study, run_table, times
+from .measures import Study, load_study, lost_error, run_table, times
 from .statistics import survival
 from .tables import comparison_table, conditions_table, group_table
 
@@ -44,30 +43,24 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
     tables = {'runs': runs, 'conditions': conditions_table(study, runs), 'comparisons': comparison_table(study, runs),
               'groups': group_table(runs)}
     drawn = []
-    with matplotlib.rc_context({**STYLE, 'svg.hashsalt': 'shared-control'}):
-        for plot, figure, numbers in draw_all(study):
+    footer = origin(study.plan.seed)
+    with matplotlib.rc_context(PAPER):
+        for plot, sheet, numbers in draw_all(study):
             tables[plot.name] = numbers
-            for kind in ('svg', 'png'):
-                write_atomically(figures / f'{plot.name}.{kind}', _image(figure, kind))
+            sheet.save(figures / plot.name, footer, f'{plot.title}. {plot.caption}')
             drawn.append((plot, _embedded(figures / f'{plot.name}.svg')))
     for name, table in tables.items():
         write_atomically(data / f'{name}.csv', table.to_csv(index=False, float_format='%.6g').encode())
     page = output / 'report.html'
-    write_atomically(page, _page(study, tables, drawn).encode())
+    write_atomically(page, _page(study, tables, drawn, footer).encode())
     return page
-
-
-def _image(figure: Figure, kind: str) -> bytes:
-    image = io.BytesIO()
-    figure.savefig(image, format=kind, dpi=130, metadata={'Date': None} if kind == 'svg' else None)
-    return image.getvalue()
 
 
 def _embedded(svg: Path) -> str:
     return 'data:image/svg+xml;base64,' + base64.b64encode(svg.read_bytes()).decode()
 
 
-def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list) -> str:
+def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list, footer: str) -> str:
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True,
                                      lstrip_blocks=True)
     environment.filters['number'] = _number
@@ -83,7 +76,9 @@ def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list) -> str:
         css=Markup(STYLE_SHEET.read_text()), study=study, simulated=simulated, figures=drawn,
         headlines=_headlines(study), conditions=conditions,
         measures=list(dict.fromkeys(row['measure'] for row in conditions)), comparisons=comparisons, groups=groups,
-        reduction=_reduction(study), thesis_reduction=THESIS_REDUCTION)
+        reduction=_reduction(study), thesis_reduction=THESIS_REDUCTION,
+        tasks={task.name: (task, 100 * lost_error(task)) for task in map(study.task, study.conditions)},
+        origin=footer)
 
 
 def _headlines(study: Study) -> list[tuple[str, str]]:

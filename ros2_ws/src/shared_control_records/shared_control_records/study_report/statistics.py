@@ -127,7 +127,9 @@ def survival(times: Times) -> Survival:
         low, high = np.full((2, len(waiting)), np.nan)
         median = Estimate(when_half(waiting), np.nan, np.nan)
     else:
-        median = Estimate(when_half(waiting), when_half(low), when_half(high))
+        ends = when_half(low), when_half(high)
+        # One without width would look certain.
+        median = Estimate(when_half(waiting), *(ends if ends[0] < ends[1] else (np.nan, np.nan)))
     return Survival(
         np.concatenate([[0.0], curve.quantiles]), np.concatenate([[1.0], waiting]), np.concatenate([[1.0], low]),
         np.concatenate([[1.0], high]), median)

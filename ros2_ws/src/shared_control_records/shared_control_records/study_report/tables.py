@@ -30,7 +30,7 @@ MEASURES = (
     Measure('moving_kept', 'Trajectory tests: ball kept', '%', lower_is_better=False),
     Measure('workload', 'Workload (raw NASA-TLX)', '0-100'),
 )
-"""What conditions are compared by, beside the episodes to skilled. A ball that fell counts as 20 cm off."""
+"""What conditions are compared by, beside the episodes to skilled. A ball that fell lies where the tray ends."""
 
 
 def conditions_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
@@ -76,7 +76,7 @@ def comparison_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
 def group_table(runs: pd.DataFrame) -> pd.DataFrame:
     """A row for every condition, group of participants and quantity of 4.4 and 4.5."""
     quantities = {'human_variance': ("Variance of the human's moment within an episode", '(N m)²'),
-                  'agent_variance': ("Variance of the agent's moment within an episode", '(N m)²'),
+                  'agent_variance': ("Variance of the robot's moment within an episode", '(N m)²'),
                   'pushed_error': ('Perturbation test: |position error|', 'cm')}
     rows = []
     for (condition, group), own in runs[runs.taught].groupby(['condition', 'group'], sort=False):

@@ -25,13 +25,16 @@ def run(args: argparse.Namespace) -> int:
     # Imported late: pinocchio and matplotlib take a second, which `--help` need not wait for.
     from tqdm import tqdm
 
+    from ..plotting.plot import origin, write_captions
     from .figures import plots
     from .run import validate
     args.output.mkdir(parents=True, exist_ok=True)
     validation = validate()
     print(validation.table(), file=prose(args.json))
-    for plot in tqdm(list(plots(validation.runs)), unit='figure', desc='figures', disable=None):
-        plot.save(args.output)
+    found = list(plots(validation.runs))
+    write_captions(found, args.output / 'captions.md')
+    for plot in tqdm(found, unit='figure', desc='figures', disable=None):
+        plot.save(args.output, origin())
     print(f'Figures are in {args.output}', file=prose(args.json))
     write_json(validation.as_json(), args.json)
     return 0 if validation.passed else 1
