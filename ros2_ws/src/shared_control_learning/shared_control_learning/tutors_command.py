@@ -42,8 +42,8 @@ def run(args: argparse.Namespace) -> int:
               f'{1e3 * row["position_error"]:>8.0f} {row["intervention_rate"]:>5.0%} {row["presses_a_minute"]:>8.0f}  '
               f'{row["source"]}', file=output)
     print(f'{args.individuals} individuals each, alone with an idle robot, one episode of {task.episode_seconds:g} s; '
-          'off: median |position error| over the last 3 s; rate: intervention rate; presses: changes of the moment in a '
-          'minute. Simulated.', file=output)
+          'off: median |position error| over the last 3 s; rate: intervention rate; presses: changes of the moment in '
+          'a minute. Simulated.', file=output)
     write_json({'task': task.name, 'tutors': rows}, args.json)
     return 0
 

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_hex, to_rgb
+from matplotlib.image import imread, imsave
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
-from PIL import Image
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
@@ -86,7 +86,8 @@ def draw_picture(path: Path, title: str, footer: str, bag: Bag | None, tracks: S
         parts = (('lessons', [lessons, *scale], False), ('alone', [alone], False), ('moments', [human, agent], True),
                  ('returns', [returns], False), ('shares', [shares], False), ('results', [results], False))
         captions = _captions(task, taught, rows, test)
-        return [Panel(name, captions[name], _cut(sheet, path, axes), wide) for name, axes, wide in parts]
+        pixels = imread(path.with_suffix('.png'))
+        return [Panel(name, captions[name], _cut(sheet, pixels, axes), wide) for name, axes, wide in parts]
 
 
 def _captions(task: Task, taught: Sequence[EpisodeTrack], rows: Sequence[EpisodeRow], test: FinalTest | None
@@ -111,15 +112,14 @@ def _captions(task: Task, taught: Sequence[EpisodeTrack], rows: Sequence[Episode
                    'edge).'}
 
 
-def _cut(sheet: Sheet, path: Path, parts: Sequence[Axes]) -> bytes:
-    """A part of the picture that was written to ``path``, with its titles and labels."""
+def _cut(sheet: Sheet, pixels: np.ndarray, parts: Sequence[Axes]) -> bytes:
+    """A part of the picture, with its titles and labels, as a PNG; ``pixels`` is (height, width, 4)."""
     box = Bbox.union([box for axes in parts for box in [axes.get_tightbbox()] if box is not None])
     scale = DPI / sheet.figure.dpi
-    with Image.open(path.with_suffix('.png')) as picture:
-        left, right = (round(scale * edge) for edge in (box.x0 - 6, box.x1 + 6))
-        top, bottom = (picture.height - round(scale * edge) for edge in (box.y1 + 6, box.y0 - 6))
-        cut = io.BytesIO()
-        picture.convert('RGB').crop((max(left, 0), max(top, 0), min(right, picture.width), bottom)).save(cut, 'PNG')
+    left, right = (max(round(scale * edge), 0) for edge in (box.x0 - 6, box.x1 + 6))
+    top, bottom = (max(len(pixels) - round(scale * edge), 0) for edge in (box.y1 + 6, box.y0 - 6))
+    cut = io.BytesIO()
+    imsave(cut, pixels[top:bottom, left:right, :3], format='png')
     return cut.getvalue()
 
 

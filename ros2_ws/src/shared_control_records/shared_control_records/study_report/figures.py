@@ -185,8 +185,10 @@ def draw_trajectory(frequency: float) -> Draw:
 
 
 def _returns_shown(study: Study) -> tuple[float, float]:
-    """From the least to the greatest return of an episode in which the ball is kept, and a little more. One in which it
-    falls costs thousands: it is drawn at the edge."""
+    """From the least to the greatest return of an episode in which the ball is kept, and a little more.
+
+    One in which it falls costs thousands: it is drawn at the edge.
+    """
     rows = [row for run in study.runs for row in run.episodes]
     kept = [row['return'] for row in rows if not row['fallen']] or [row['return'] for row in rows]
     margin = 0.05 * (max(kept) - min(kept) or 1.0)
