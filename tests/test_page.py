@@ -7,9 +7,10 @@ import pytest
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import alert_is_present
 from selenium.webdriver.support.wait import WebDriverWait
+from shared_control import contract as table
 from shared_control_ros import contract
 from shared_control_testing.page import SIZES, Browser, serve
-from shared_control_testing.sessions import lesson, record
+from shared_control_testing.sessions import MS, START_NS, lesson, message, record
 
 pytestmark = pytest.mark.alone
 
@@ -181,6 +182,16 @@ class TestASessionOnThePage:
         browser.wait(lambda: len(browser.chart('returns')[0]) == 1, 'the return', timeout=60)
         assert 0 <= browser.chart('shares')[0][0] <= 100
 
+    def test_the_person_judges_it(self, browser):
+        pressed = 'return [...document.querySelectorAll(".judge [aria-pressed=true]")].map((b) => b.dataset.part)'
+        assert browser.text('judged') == 'Episode 1'
+        assert 'discard it: the robot forgets it' in browser.driver.find_element('css selector', '.help').text
+        browser.type('g')
+        browser.wait(lambda: browser.script(pressed) == ['judge-success'], 'the verdict')
+        browser.part('judge-discard').click()
+        browser.wait(lambda: browser.script(pressed) == ['judge-discard'], 'the other verdict')
+        browser.wait(lambda: browser.chart('returns') == [[]], 'a chart without it')
+
     def test_nothing_went_wrong_in_the_browser(self, browser):
         assert browser.complaints() == []
 
@@ -282,7 +293,9 @@ class TestASessionByTheKeyboardAlone:
 @pytest.fixture
 def replay(tmp_path):
     """The address of a replay of two episodes of 6 s."""
-    bag = record([lesson(300, seed=1), lesson(300, seed=2)]).write(tmp_path / 'bag')
+    made = record([lesson(300, seed=1), lesson(300, seed=2)])
+    made.add(table.VERDICT, START_NS + 7_000 * MS, message(table.VERDICT.type, key='teach 1', value='success'))
+    bag = made.write(tmp_path / 'bag')
     process, address = serve('replay', str(bag))
     yield address
     process.send_signal(signal.SIGINT)
@@ -295,6 +308,7 @@ def test_a_recorded_session_plays_on_the_page(replay):
     try:
         browser.open(replay)
         browser.wait(lambda: browser.text('phase') == 'Teach · episode 1', 'the first episode')
+        assert browser.driver.find_element('css selector', '.marks').text.split() == ['1✓', '2'], 'with the verdict'
         assert browser.text('position') == '0:00 / 0:12', 'it waits for whoever watches'
         browser.script('const s = document.querySelector("[data-part=slider]"); s.value = 8;'
                        's.dispatchEvent(new Event("input"))')

@@ -1,9 +1,12 @@
 """PPO agent: learns on the running graph, an update an episode, and publishes its moment M_yai at 50 Hz.
 
-Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench and /target_wrench, publishes
-/agent/target_wrench and /training/*, rests and resets the simulator between episodes. Services (Trigger):
+Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench, /target_wrench and /human/verdict,
+publishes /agent/target_wrench and /training/*, rests and resets the simulator between episodes. Services (Trigger):
 learner/start: end the practice; learner/repeat: start the episode over; learner/finish: end the teaching after this
 episode; learner/keep_teaching: take that back.
+
+A verdict is about the last episode that has ended. An episode of teaching that is discarded before the next one begins
+is unlearned and taught again; later it is only labelled.
 """
 
 import time
@@ -16,6 +19,7 @@ from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
 from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.rates import POLICY_PERIOD
+from shared_control.verdict import Verdict
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.episode_table import TABLE_NAME, EpisodeTable
@@ -35,6 +39,7 @@ from std_srvs.srv import Trigger
 
 from .graph_plant import GraphPlant
 from .training_topics import TrainingTopics
+from .verdicts import Verdicts
 
 STEPS_PER_PROGRESS = 5
 """Progress is told at 10 Hz."""
@@ -106,6 +111,7 @@ class PpoAgentNode(Callbacks):
         self._training = TrainingTopics(node)
         self._diagnostics = Diagnostics(node, POLICY_PERIOD)
         self._background = Background(node)
+        self._verdicts = Verdicts(node, self._training, self._judged)
         self._plant = GraphPlant(node, self._learner.task.axes, self._background, self._attend, robot)
         self._stop: Stop | None = None
         node.create_service(Trigger, contract.START_SERVICE, self._on_start)
@@ -200,11 +206,16 @@ class PpoAgentNode(Callbacks):
     def _attend(self) -> None:
         """Everything besides learning; called once a step and while waiting."""
         self._background.poll()
+        self._verdicts.poll()
         if self._diagnostics.due():
             self._diagnostics.publish(
                 {}, phase=self._training.phase, episode=self._learner.episode, late_steps=self._plant.late_steps)
         if self._stop is not None and self._stop.requested:
             raise _Stopped
+
+    def _judged(self, episode: Episode) -> None:
+        if self._table is not None:
+            self._table.amend(episode)
 
     def _on_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success = self._practises
@@ -260,6 +271,7 @@ class PpoAgentNode(Callbacks):
         """See :class:`Callbacks`."""
         self._ended = time.monotonic()
         self._training.episode_return(episode.episode_return)
+        self._verdicts.episode_ended(episode)
         self._training.enter('learn')
         self._plant.rest()
 
@@ -275,9 +287,25 @@ class PpoAgentNode(Callbacks):
             f'learned in {episode.learn_seconds:.2f} s')
         self._take_a_break(self._ended)
 
+    def is_discarded(self, episode: Episode) -> bool:
+        """See :class:`Callbacks`."""
+        self._attend()
+        return episode.verdict is Verdict.DISCARD
+
+    def episode_unlearned(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._verdicts.close()
+        if self._policy_path is not None:
+            if self._learner.episode:
+                save_policy(self._learner, self._policy_path)
+            else:
+                self._policy_path.unlink()  # as before the first episode: a learner that has learned nothing is none
+        self.node.get_logger().info(f'episode {episode.number} is discarded: it is unlearned, and taught again')
+
     def episode_tested(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
         self._training.episode_return(episode.episode_return)
+        self._verdicts.episode_ended(episode)
         if self._table is not None:
             self._table.append(episode)
         self._take_a_break(time.monotonic())

@@ -2,8 +2,10 @@
 
 from typing import Any
 
+from diagnostic_msgs.msg import KeyValue
 from rclpy.duration import Duration
 from rclpy.node import Node
+from shared_control.verdict import Verdict, episode_key
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
 from std_msgs.msg import Float64, Int32, String
@@ -13,7 +15,7 @@ FLUSH_SECONDS = 2.0
 
 
 class TrainingTopics:
-    """Publishes phase, episode, time left, share, return and success."""
+    """Publishes phase, episode, time left, share, return, success and a person's verdicts."""
 
     def __init__(self, node: Node):
         def publisher(topic: Topic) -> Any:
@@ -25,6 +27,7 @@ class TrainingTopics:
         self._return = publisher(contract.EPISODE_RETURN)
         self._share = publisher(contract.HUMAN_SHARE)
         self._success = publisher(contract.SUCCESS)
+        self._verdict = publisher(contract.VERDICT)
         self.phase = ''
 
     def enter(self, phase: str) -> None:
@@ -54,7 +57,11 @@ class TrainingTopics:
         """A test has ended; 0..1."""
         self._success.publish(Float64(data=rate))
 
+    def verdict(self, phase: str, number: int, verdict: Verdict) -> None:
+        """What a person says of an episode."""
+        self._verdict.publish(KeyValue(key=episode_key(phase, number), value=str(verdict)))
+
     def flush(self) -> None:
         """Wait until everybody has the last words, or somebody does not take them."""
-        for publisher in (self._phase_publisher, self._return, self._success):
+        for publisher in (self._phase_publisher, self._return, self._success, self._verdict):
             publisher.wait_for_all_acked(Duration(seconds=FLUSH_SECONDS))

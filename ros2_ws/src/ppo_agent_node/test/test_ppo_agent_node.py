@@ -6,6 +6,7 @@ import pytest
 from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import load_policy, read_description
 from shared_control_ros import contract
+from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
 EPISODE_TIMEOUT = 90.0
@@ -99,6 +100,27 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert [(r['episode'], r['phase']) for r in rows] == [
         ('1', BROKEN_OFF), ('1', 'teach'), ('2', BROKEN_OFF), ('2', BROKEN_OFF)]
     assert [float(r['seconds']) >= at_least for r, at_least in zip(rows[2:], (1.0, 0.5), strict=True)] == [True, True]
+
+
+def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again(graph, start_node, observer, output):
+    heard = {topic.name: observer.listen(topic) for topic in (contract.VERDICT, contract.EPISODE)}
+
+    def verdicts():
+        return [(message.key, message.value) for message in heard[contract.VERDICT.name]]
+    say = observer.publisher(contract.HUMAN_VERDICT)
+    agent = start_node('ppo_agent_node', episodes=1, episode_seconds=2.0, output=output, break_seconds=5.0)
+    observer.spin(lambda: verdicts() == [('teach 1', '')], EPISODE_TIMEOUT, 'the first episode ends')
+    for word in ('failure', 'discard'):
+        say.publish(String(data=word))
+    observer.spin(lambda: len(verdicts()) == 4, EPISODE_TIMEOUT, 'it ends again')
+    say.publish(String(data='success'))
+    assert exit_code(observer, agent) == 0, agent.log()
+    assert 'episode 1 is discarded: it is unlearned' in agent.log()
+    assert verdicts() == [('teach 1', word) for word in ('', 'failure', 'discard', '', 'success')]
+    assert [message.data for message in heard[contract.EPISODE.name]] == [1, 1]
+    rows = read_rows(output / 'episodes.csv')
+    assert [(row['episode'], row['verdict']) for row in rows] == [('1', 'discard'), ('1', 'success')]
+    assert load_policy(output / 'policy.safetensors').episode == 1
 
 
 @pytest.mark.parametrize(('parameters', 'words'), [

@@ -63,6 +63,9 @@ ANSWER_DIGITS = 19
 KEYS = Topic(
     'human/keys', 'sensor_msgs/msg/Joy', 50, 'any source of keys', 'teleop', 'on event, 10 Hz or more',
     'buttons = left, right, space')
+HUMAN_VERDICT = Topic(
+    'human/verdict', 'std_msgs/msg/String', 10, 'terminal, page, buttons of a Joy', 'agent', 'on event',
+    'of the last episode that has ended: `success`, `failure`, `discard`; the same again takes it back')
 HUMAN_WRENCH = Topic(
     'human/target_wrench', 'geometry_msgs/msg/WrenchStamped', 50, 'teleop', 'controller, agent, tutor',
     '50 Hz, zero included', "moment along the task's axes, N m")
@@ -107,6 +110,12 @@ HUMAN_SHARE = Topic(
     'training/human_share', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz',
     r'0..1: mean of \|M_yh\| / (\|M_yh\| + \|M_yai\|) over the episode so far', latched=True)
 SUCCESS = Topic('training/success', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of a test', '0..1', latched=True)
+VERDICT = Topic(
+    'training/verdict', 'diagnostic_msgs/msg/KeyValue', 100, 'agent', 'screens',
+    'end of an episode, and on change',
+    "a person's verdict as it counts; key: the episode, `teach 4`; value: `success`, `failure`, `discard`, "
+    'or empty',
+    latched=True)
 WAITING = Topic(
     'session/waiting', 'std_msgs/msg/String', 1, 'session', 'screens', 'on change, then 1 Hz',
     'what the session waits for and since when; in a second line the newest warning about it; empty: nothing. '
@@ -114,10 +123,11 @@ WAITING = Topic(
     latched=True, in_bag=False)
 
 TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
+"""Series of a number or a text."""
 TOPICS = (
-    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_WRENCH, AGENT_WRENCH, APPLIED_WRENCH,
-    HUMAN_APPLIED, AGENT_APPLIED, BALL, DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING,
-    WAITING)
+    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_VERDICT, HUMAN_WRENCH, AGENT_WRENCH,
+    APPLIED_WRENCH, HUMAN_APPLIED, AGENT_APPLIED, BALL, DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING,
+    VERDICT, WAITING)
 BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
 """What a recorder records."""
 

@@ -24,6 +24,13 @@ class Callbacks:
     def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
         """The update is done, the learner consistent: the time to save it. ``figures``: of the update, by name."""
 
+    def is_discarded(self, episode: Episode) -> bool:
+        """Called before the next episode: whether a person has discarded the one that was just learned from."""
+        return False
+
+    def episode_unlearned(self, episode: Episode) -> None:
+        """The learner is again as it was before the discarded episode, and consistent: the time to save it."""
+
     def episode_tested(self, episode: Episode) -> None:
         """An episode of a test is over."""
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.task import Task, settled
+from shared_control.verdict import Verdict
 
 
 @dataclass(eq=False)
@@ -46,6 +47,8 @@ class Episode:
     """What was seen after the last step."""
     learn_seconds: float = 0.0
     """Duration of the update after the episode, s."""
+    verdict: Verdict = Verdict.NONE
+    """What a person has said of it."""
 
     def __post_init__(self) -> None:
         self.reward_terms = self.reward_terms or dict.fromkeys(self.task.reward_names, 0.0)
@@ -103,7 +106,8 @@ class Episode:
             'human_share': self.human_share,
             'intervention_rate': self.intervention_rate,
             'settled_position_error': settled(np.array(self.position_error)),
-            'settled_velocity': settled(np.array(self.velocity)), 'learn_seconds': self.learn_seconds}
+            'settled_velocity': settled(np.array(self.velocity)), 'learn_seconds': self.learn_seconds,
+            'verdict': str(self.verdict)}
 
 
 def _magnitudes(moments: list[np.ndarray]) -> np.ndarray:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from shared_control.files import write_atomically
+from shared_control.verdict import Verdict
 
 from .episode import Episode
 
@@ -37,11 +38,15 @@ class EpisodeTable:
         before = read_rows(path)
         rows = [row for row in before if row['phase'] == 'teach' and int(row['episode']) <= taught]
         if live:
-            rows = [row if row['phase'] == BROKEN_OFF or int(row['episode']) <= taught else {**row, 'phase': BROKEN_OFF}
-                    for row in before if row['phase'] in ('teach', BROKEN_OFF)]
+            rows = [row if row['phase'] == BROKEN_OFF or int(row['episode']) <= taught or _is_discarded(row)
+                    else {**row, 'phase': BROKEN_OFF} for row in before if row['phase'] in ('teach', BROKEN_OFF)]
             rows += [row for row in read_rows(self._unfinished) if [row] != before[-1:] and not any(
-                other['phase'] == 'teach' and other['episode'] == row['episode'] for other in before)]
+                other['phase'] == 'teach' and other['episode'] == row['episode'] and not _is_discarded(other)
+                for other in before)]
+        rows = [row | {'verdict': row.get('verdict', '')} for row in rows]
         self._has_header = bool(rows)
+        self._last: tuple[Episode, int, int] | None = None
+        """The episode appended last, and where in the file its row begins and ends."""
         self.taught_seconds = sum(float(row['seconds']) + float(row.get('learn_seconds', 0.0)) for row in rows)
         """How long the learner was taught before, s: its episodes by the robot's time, and the time of learning."""
         write_atomically(path, (_csv([list(rows[0])]) + _csv([list(row.values()) for row in rows])).encode()
@@ -50,7 +55,17 @@ class EpisodeTable:
 
     def append(self, episode: Episode) -> None:
         """The row of an episode that has ended."""
-        self._append(episode.row())
+        end = self._append(episode.row())
+        self._last = episode, end - len(_csv([list(episode.row().values())]).encode()), end
+
+    def amend(self, episode: Episode) -> None:
+        """Write the row of the episode that was appended last anew; nothing when that was another."""
+        if self._last is None or self._last[0] is not episode:
+            return
+        _, begin, end = self._last
+        content, row = self._path.read_bytes(), _csv([list(episode.row().values())]).encode()
+        write_atomically(self._path, content[:begin] + row + content[end:])
+        self._last = episode, begin, begin + len(row)
 
     def break_off(self, episode: Episode) -> None:
         """The row of an episode that will not be learned from; none when it has not begun."""
@@ -63,14 +78,21 @@ class EpisodeTable:
         with suppress(OSError):  # a full disk is an error at the episode's end
             write_atomically(self._unfinished, _csv([list(row), list(row.values())]).encode(), synced=False)
 
-    def _append(self, row: dict[str, float | int | str]) -> None:
+    def _append(self, row: dict[str, float | int | str]) -> int:
+        """Write a row; gives where it ends in the file."""
         lines = _csv([list(row.values())] if self._has_header else [list(row), list(row.values())])
         with self._path.open('a', newline='') as file:
             file.write(lines)
             file.flush()
             os.fsync(file.fileno())
+            end = file.tell()
         self._has_header = True
         self._unfinished.unlink(missing_ok=True)
+        return end
+
+
+def _is_discarded(row: dict[str, str]) -> bool:
+    return row.get('verdict') == Verdict.DISCARD
 
 
 def read_rows(path: Path) -> list[dict[str, str]]:
@@ -87,7 +109,7 @@ def read_rows(path: Path) -> list[dict[str, str]]:
         for row in rows:
             int(row['episode'])
             for column, value in row.items():
-                if column != 'phase':
+                if column not in ('phase', 'verdict'):
                     float(value)  # a row that is too short has None
     except (ValueError, KeyError, TypeError, csv.Error) as error:
         raise ValueError(f'{path} is no table of episodes: {error!r}') from error

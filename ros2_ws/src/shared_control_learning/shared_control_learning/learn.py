@@ -9,13 +9,15 @@ from shared_control.plant import PlantInterrupted
 
 from .callbacks import Callbacks
 from .episode import Episode
-from .learner import Learner
+from .learner import Learner, Snapshot
 from .threads import one_thread
 
 
 def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, callbacks: Callbacks | None = None,
           ) -> None:
     """Learn, one update an episode, until ``learner.episode`` is ``episodes`` or the callbacks say stop.
+
+    An episode that a person discards before the next one begins is unlearned, and its number is done again.
 
     Args:
         episodes: in all, those of an earlier run included; no end when None.
@@ -29,12 +31,16 @@ def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, 
         except PlantInterrupted as error:
             callbacks.interrupted(error)
             continue
+        before = Snapshot(learner)
         callbacks.learning_started(episode)
         started = time.monotonic()
         with one_thread():
             figures = learner.learn_from(episode)
         episode.learn_seconds = time.monotonic() - started
         callbacks.episode_learned(episode, figures)
+        if callbacks.is_discarded(episode):
+            before.put_back(learner)
+            callbacks.episode_unlearned(episode)
 
 
 def run_episode(act: Callable[[np.ndarray], np.ndarray], env: SharedControlEnv, seed: int, episode: Episode,

@@ -49,3 +49,20 @@ class Learner(Protocol):
         Raises:
             ValueError: these are not tensors of such a learner; the message names the one that is wrong.
         """
+
+
+class Snapshot:
+    """What a learner has learned so far, to go back to.
+
+    Args:
+        learner: whose state is copied.
+    """
+
+    def __init__(self, learner: Learner):
+        self._episode = learner.episode
+        self._tensors = {name: tensor.clone() for name, tensor in learner.tensors().items()}
+
+    def put_back(self, learner: Learner) -> None:
+        """Make the learner what it was, as if it had learned nothing since."""
+        learner.restore(self._tensors)
+        learner.episode = self._episode

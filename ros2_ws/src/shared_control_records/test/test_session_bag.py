@@ -118,7 +118,7 @@ def test_garbled_messages_are_unusable_and_the_others_count(recording, tmp_path)
         recording.add(topic, made.START_NS + 1000, b'\x00\x01\x00\x00\xff')
     bag = read_bag(recording.write(tmp_path / 'bag'))
     assert bag.counts == {topic: count + 1 for topic, count in whole.counts.items()}
-    not_decoded = (contract.CLOCK, contract.DISTURBANCE, contract.EMERGENCY_STOP)
+    not_decoded = (contract.CLOCK, contract.DISTURBANCE, contract.EMERGENCY_STOP, contract.HUMAN_VERDICT)
     assert bag.unusable == {topic.full_name: 1 for topic in contract.BAG_TOPICS if topic not in not_decoded}
     assert len(bag.joint_states.stamp_ns) == len(whole.joint_states.stamp_ns)
     assert len(bag.ball.stamp_ns) == len(whole.ball.stamp_ns) and bag.presses == whole.presses

@@ -46,13 +46,13 @@ INTERFACES = {
         subscribes=(contract.JOINT_STATES, contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.EMERGENCY_STOP),
         serves=CONTROLLER),
     'teleop_key_node': Interface(
-        publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.DIAGNOSTICS),
-        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),
+        publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.HUMAN_VERDICT, contract.DIAGNOSTICS),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING),
         calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'ppo_agent_node': Interface(
-        publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING),
+        publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING, contract.VERDICT),
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
-                    contract.APPLIED_WRENCH),
+                    contract.APPLIED_WRENCH, contract.HUMAN_VERDICT),
         serves=LEARNER,
         calls=(contract.RESET_SERVICE, contract.REST_SERVICE, contract.SEED_SERVICE)),
     'sim_tutor_node': Interface(
@@ -60,8 +60,8 @@ INTERFACES = {
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.EPISODE,
                     contract.PHASE)),
     'teach_page_node': Interface(
-        publishes=(contract.KEYS,),
-        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.WAITING),
+        publishes=(contract.KEYS, contract.HUMAN_VERDICT),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING),
         calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), subscribes=contract.BAG_TOPICS),
     'robot_view_node': Interface(
@@ -70,7 +70,7 @@ INTERFACES = {
         publishes=(contract.WAITING,),
         subscribes=(contract.PHASE, contract.EPISODE_RETURN, contract.DIAGNOSTICS)),
     'operator': Interface(
-        publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE),
+        publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE, contract.HUMAN_VERDICT),
         subscribes=contract.TOPICS,
         calls=(*CONTROLLER, contract.ROBOT_ENABLE_SERVICE, contract.ERROR_RECOVERY_SERVICE, contract.RESET_SERVICE,
                contract.PAUSE_SERVICE, contract.FINISH_SERVICE, contract.KEEP_TEACHING_SERVICE)),

@@ -13,15 +13,27 @@ class History:
     shares: list[float | None] = field(default_factory=list)
     """0..1; None where it is not known any more: the page came later."""
 
+    last_counts: bool = True
+    """Whether the last of them has not been discarded."""
+
+    def clear(self) -> None:
+        """The count begins anew."""
+        self.returns.clear()
+        self.shares.clear()
+
     def add(self, episode_return: float, share: float | None) -> None:
-        """An episode has ended."""
+        """An episode has ended; the one before is gone for good if it was discarded."""
+        if not self.last_counts:
+            del self.returns[-1:], self.shares[-1:]
+        self.last_counts = True
         self.returns.append(episode_return)
         self.shares.append(share)
 
     def message(self) -> dict[str, Any]:
         """For the browser; None for what is not finite, which JSON cannot say."""
-        return {'returns': [_rounded(value, 2) for value in self.returns],
-                'shares': [_rounded(value, 4) for value in self.shares]}
+        until = len(self.returns) - (not self.last_counts)
+        return {'returns': [_rounded(value, 2) for value in self.returns[:until]],
+                'shares': [_rounded(value, 4) for value in self.shares[:until]]}
 
 
 def _rounded(value: float | None, digits: int) -> float | None:

@@ -177,6 +177,11 @@ def _buttons() -> None:
         _button('pause', 'Pause', 'everything waits')
         _button('repeat', 'Repeat', 'same ball again')
         _button('stop', 'Stop', 'end, keep all')
+        with _part('judge').classes('judge').props('hidden role=group aria-labelledby=judged'):
+            _text('judged').props('id=judged')
+            _button('judge-success', 'Good', 'key g')
+            _button('judge-failure', 'Bad', 'key b')
+            _button('judge-discard', 'Discard', 'key x')
         with ui.element('div').classes('last'):
             _button('finish', 'Done teaching: test the robot')
             with _part('sure').classes('sure').props('hidden role=group aria-label="End the teaching?"'):
@@ -245,8 +250,10 @@ _STAYS = 'each press adds a notch of push, and the push <b>stays</b>. <kbd>space
 _HELP = (
     'Bring the ball to rest on the <b class="goal">green mark</b> in the middle.',
     f'<kbd>←</kbd> and <kbd>→</kbd>: {_STAYS}',
-    'Push when the robot errs; take your push away when it does well. <kbd>p</kbd> pauses.')
-_HELP_FROM_ABOVE = (f'<kbd>←</kbd> <kbd>↑</kbd> <kbd>↓</kbd> <kbd>→</kbd>: {_STAYS}', _HELP[2])
+    'Push when the robot errs; take your push away when it does well. <kbd>p</kbd> pauses.',
+    'Of the last episode: <kbd>g</kbd> good, <kbd>b</kbd> bad, <kbd>x</kbd> discard it: the robot forgets it. The same '
+    'key again takes that back.')
+_HELP_FROM_ABOVE = (f'<kbd>←</kbd> <kbd>↑</kbd> <kbd>↓</kbd> <kbd>→</kbd>: {_STAYS}', *_HELP[2:])
 _REPLAY_HELP = (
     '<kbd>space</kbd> plays and pauses; the slider goes anywhere, its marks are episodes.',
     '<kbd>←</kbd> and <kbd>→</kbd> go back and on by 5 s.',

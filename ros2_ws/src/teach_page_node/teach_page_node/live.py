@@ -10,8 +10,10 @@ from sensor_msgs.msg import Joy
 from shared_control.keys import Key, KeyPresses, count_buttons
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Background, Polled, follow_clock
+from shared_control_ros.watching.judge import Judge
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Moment, Observer
 from shared_control_ros.watching.scene import Scene
@@ -55,6 +57,7 @@ class LiveDesk:
         self._joy = Joy(buttons=[0] * count_buttons(task.keys))
         self._joy.header.frame_id = SOURCE
         self._requests = PageRequests(node, self._tell)
+        self._judge = Judge(node, self._tell)
         self._background = Background(node)
         self._notice_until = 0.0
         self._paused_stamp_ns = 0
@@ -78,6 +81,7 @@ class LiveDesk:
             asked=self._human.update(now), parts=scene.parts if full else None,
             phase=scene.phase, episode=scene.episode, time_left=scene.time_left, next_in=scene.next_in,
             outcome=None if self.showing.feedback == 'none' else scene.outcome,
+            ended=scene.ended, verdict=scene.verdict,
             ends_teaching=self._requests.ending, ending=self._ended(now),
             human_share=scene.human_share if full else None, success=scene.success if full else None,
             keys=[int(now < lit) for lit in self._lit_until],
@@ -90,8 +94,7 @@ class LiveDesk:
         if self._lesson.restarts != self._restarts:
             self._restarts = self._lesson.restarts
             if self._lesson.phase == 'teach':  # a test counts from 1, too
-                self._history.returns.clear()
-                self._history.shares.clear()
+                self._history.clear()
         known, share = len(scene.returns), scene.human_share
         self._observer.update(scene)
         if self._requests.paused and self._observer.stamp_ns > self._paused_stamp_ns + 500_000_000:
@@ -102,6 +105,9 @@ class LiveDesk:
         if scene.phase not in ('test', 'done'):
             for value in new:
                 self._history.add(value, share if len(new) == 1 else None)
+        if scene.ended is not None and scene.ended[0] == 'teach':
+            self._history.last_counts = scene.verdict is not Verdict.DISCARD
+        self._judge.update(scene)
 
     @property
     def is_finished(self) -> bool:
@@ -159,6 +165,8 @@ class LiveDesk:
             self._requests.finish()
         elif command == 'keep_teaching':
             self._requests.keep_teaching()
+        elif command == 'judge':
+            self._judge.say(self._scene, Verdict(value))
         elif command == 'stop':
             self.is_over, self._stage = True, 'stopped'
         elif command == 'close':

@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
+from shared_control.verdict import Verdict
 from shared_control_ros.watching.outcome import Outcome
 from shared_control_ros.watching.scene import Moments, Parts
 
@@ -39,6 +40,10 @@ class Picture:
     """Until the next episode begins, s."""
     outcome: Outcome | None = None
     """How the last episode ended."""
+    ended: tuple[str, int] | None = None
+    """Phase and number of the last episode that has ended, which a verdict is about."""
+    verdict: Verdict = Verdict.NONE
+    """What a person has said of it."""
     ends_teaching: bool = False
     """Whether the teaching ends with this episode."""
     ending: dict[str, Any] | None = None
@@ -70,6 +75,7 @@ class Picture:
             'pitch': _rounded(self.pitch), 'tilt': _rounded(self.tilt),
             'asked': _rounded(self.asked), **self._moments(), 'phase': self.phase, 'episode': self.episode,
             'next_in': _rounded(self.next_in), 'outcome': None if self.outcome is None else asdict(self.outcome),
+            'ended': self.ended, 'verdict': self.verdict,
             'ends_teaching': self.ends_teaching, 'ending': self.ending, 'trace': self.trace,
             'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share),
             'success': _rounded(self.success), 'keys': self.keys, 'hand': self.hand,

@@ -6,8 +6,10 @@ import numpy as np
 from shared_control import contract
 from shared_control.keys import count_buttons
 from shared_control.robot.model import RobotModel, pitch
+from shared_control.verdict import Verdict, episode_key
 from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series
+from shared_control_records.bag.verdicts import last_verdicts
 from shared_control_ros.watching.outcome import Outcome, outcome_of
 from shared_control_ros.watching.scene import Parts
 
@@ -73,15 +75,16 @@ class Recording:
             rows.append([round(float(at), 4), *moments])
         return rows
 
-    def marks(self) -> list[tuple[float, str]]:
-        """Where episodes begin, s, and their names: numbers, and T1, T2 ... for tests."""
-        episodes, phases = (self._bag.training[topic] for topic in (contract.EPISODE, contract.PHASE))
-        found = []
-        for at_ns, number in zip(episodes.received_ns, episodes.values, strict=True):
-            name = 'T' if _latest(phases, int(at_ns)) == 'test' else ''
-            at = float(np.interp(at_ns, self._received, self._elapsed))
-            found.append((round(at, 2), f'{name}{int(number)}'))
-        return found
+    def marks(self) -> list[tuple[float, str, str]]:
+        """Where episodes begin, s, their names (numbers, and T1, T2 ... for tests), and a person's verdicts on them."""
+        training = self._bag.training
+        starts = training[contract.EPISODE]
+        episodes = [(at_ns, str(_latest(training[contract.PHASE], at_ns)), int(number)) for at_ns, number in zip(
+            starts.received_ns.tolist(), starts.values, strict=True)]
+        verdicts = last_verdicts(self._bag, [(at_ns, episode_key(phase, number)) for at_ns, phase, number in episodes])
+        return [(round(float(np.interp(at_ns, self._received, self._elapsed)), 2),
+                 f'{"T" if phase == "test" else ""}{number}', str(verdict))
+                for (at_ns, phase, number), verdict in zip(episodes, verdicts, strict=True)]
 
     def _at(self, seconds: float) -> tuple[int, int]:
         """The joint states of so many seconds after the beginning (index), and the recorder's clock then, ns."""
@@ -137,11 +140,15 @@ class Recording:
     def _history(self, now_ns: int) -> History:
         history = History()
         returns = self._bag.training[contract.EPISODE_RETURN]
-        for at_ns, value in zip(returns.received_ns, returns.values, strict=True):
+        nexts = [*returns.received_ns[1:], now_ns + 1]
+        for at_ns, next_ns, value in zip(returns.received_ns, nexts, returns.values, strict=True):
             if at_ns > now_ns:
                 break
             if _latest(self._bag.training[contract.PHASE], int(at_ns)) not in ('test', 'done'):
                 history.add(float(value), _latest(self._bag.training[contract.HUMAN_SHARE], int(at_ns)))
+                said = [judgement.verdict for judgement in self._bag.judgements
+                        if at_ns < judgement.received_ns < min(next_ns, now_ns + 1)]
+                history.last_counts = not said or said[-1] is not Verdict.DISCARD
         return history
 
 

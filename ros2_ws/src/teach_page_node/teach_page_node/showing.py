@@ -19,7 +19,7 @@ class Showing:
     """Whether test, picture and report are shown in the end."""
     title: str = ''
     """Which recording this is."""
-    marks: tuple[tuple[float, str], ...] = ()
-    """Where its episodes begin, s, and their names."""
+    marks: tuple[tuple[float, str, str], ...] = ()
+    """Where its episodes begin, s, their names, and a person's verdicts."""
     tested: str = ''
     """What the robot alone came to in the test of the recorded session."""

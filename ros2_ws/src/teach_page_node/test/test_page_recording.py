@@ -6,7 +6,7 @@ import sys
 import pytest
 from shared_control import contract
 from shared_control_records.bag.reader import BagReadError, read_bag
-from shared_control_testing.sessions import lesson, record
+from shared_control_testing.sessions import START_NS, lesson, message, record
 from teach_page_node.recording import Recording
 from teach_page_node.replay_desk import ReplayDesk
 
@@ -26,6 +26,18 @@ def test_a_picture_is_what_was_recorded(bag):
     assert -picture.ball_on_tray[0] == pytest.approx(one.position_error[25], abs=1e-3)
     assert picture.history.returns == [-100.0]
     assert picture.message()['q'] == [round(angle, 4) for angle in picture.q.tolist()]
+
+
+def test_verdicts_are_at_the_marks_and_what_is_discarded_leaves_the_chart(tmp_path):
+    recorded = record([lesson(seed=seed) for seed in (1, 2, 3)])
+    for seconds, key, value in ((2.1, 'teach 1', ''), (2.5, 'teach 1', 'discard'), (4.1, 'teach 2', ''),
+                                (4.5, 'teach 2', 'success')):
+        recorded.add(contract.VERDICT, START_NS + round(seconds * 1e9),
+                     message(contract.VERDICT.type, key=key, value=value))
+    recording = Recording(read_bag(recorded.write(tmp_path / 'bag')))
+    assert [mark[1:] for mark in recording.marks()] == [('1', 'discard'), ('2', 'success'), ('3', '')]
+    returns = [recording.picture(seconds).history.message()['returns'] for seconds in (2.3, 2.7, 4.7)]
+    assert returns == [[-100.0], [], [-100.0]]
 
 
 def test_keys_are_lit_while_they_were_pressed(bag):

@@ -18,13 +18,18 @@ class Stroke(Enum):
     FINISH = 'finish'
     PAUSE = 'pause'
     REDRAW = 'redraw'
+    GOOD = 'good'
+    BAD = 'bad'
+    DISCARD = 'discard'
 
 
 _LETTERS = {
     b'a': Stroke.LEFT, b'A': Stroke.LEFT, b'd': Stroke.RIGHT, b'D': Stroke.RIGHT, b' ': Stroke.SPACE,
     b'w': Stroke.UP, b'W': Stroke.UP, b's': Stroke.DOWN, b'S': Stroke.DOWN,
     b'\r': Stroke.START, b'\n': Stroke.START,
-    b'q': Stroke.FINISH, b'Q': Stroke.FINISH, b'p': Stroke.PAUSE, b'P': Stroke.PAUSE, b'\x0c': Stroke.REDRAW}
+    b'q': Stroke.FINISH, b'Q': Stroke.FINISH, b'p': Stroke.PAUSE, b'P': Stroke.PAUSE, b'\x0c': Stroke.REDRAW,
+    b'g': Stroke.GOOD, b'G': Stroke.GOOD, b'b': Stroke.BAD, b'B': Stroke.BAD, b'x': Stroke.DISCARD,
+    b'X': Stroke.DISCARD}
 _ARROWS = {b'A': Stroke.UP, b'B': Stroke.DOWN, b'C': Stroke.RIGHT, b'D': Stroke.LEFT}
 
 # What a terminal sends besides characters (ECMA-48 and xterm). An arrow is ESC [ D, ESC O D (application mode) or, with

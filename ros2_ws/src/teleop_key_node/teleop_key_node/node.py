@@ -1,16 +1,17 @@
 """Teleoperation: turns the keys on /human/keys, or another device, into M_h on /human/target_wrench (50 Hz).
 
 With a terminal it reads the keys there as well and shows the lesson: arrows or a/d tip the tray, space takes the push
-away, Enter ends the practice, q the teaching, p pauses, Ctrl-C quits. Each press adds a notch of push, which stays. The
-left key moves the ball to the left of the picture.
+away, Enter ends the practice, q the teaching, p pauses, Ctrl-C quits; g says that the last episode was good, b bad, x
+discards it. Each press adds a notch of push, which stays. The left key moves the ball to the left of the picture.
 """
 
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key
 from shared_control.plugins import DEVICES, load, names
 from shared_control.teaching.device import Device
+from shared_control.verdict import Verdict
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
@@ -26,6 +27,7 @@ from .panel import Panel
 from .sources import Sources
 from .terminal import NoTerminal, Terminal
 from .ticker import Ticker
+from .verdict_buttons import VerdictButtons
 
 TICKS_PER_POLL = 5
 """How often services are looked at."""
@@ -64,6 +66,11 @@ class TeleopKeyNode:
         self._in_session = declare(
             node, 'in_session', False, 'A lesson is about to be given: until the agent speaks, the screen says that it '
             'starts, and after its end that it is over.')
+
+        buttons = {verdict: declare(
+            node, f'{verdict}_button', -1, 'Button of /human/keys (from 0) that gives the last episode the verdict '
+            f'{verdict}; -1: none.', minimum=-1, maximum=63) for verdict in Verdict if verdict}
+        self._verdicts = VerdictButtons(node, buttons, len(Key) if self._device == KEYS_DEVICE else 0)
 
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
@@ -136,6 +143,7 @@ class TeleopKeyNode:
             source = joy.header.frame_id
             try:
                 self._sources.hear(source, joy.axes, joy.buttons, now_ns)
+                self._verdicts.hear(source, joy.buttons)
             except ValueError as error:
                 text = f'dropped a message of {source!r} on {self._keys.topic_name}: {error}'
                 self.node.get_logger().error(text, throttle_duration_sec=1.0)

@@ -8,8 +8,10 @@ from rclpy.node import Node
 from sensor_msgs.msg import Joy
 from shared_control.keys import LEFT_AND_RIGHT, Key, KeyMap, count_buttons
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from shared_control_ros.watching.judge import Judge
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Observer
 from shared_control_ros.watching.requests import Requests
@@ -24,6 +26,7 @@ SOURCE = 'terminal'
 """The frame_id of the terminal's keys."""
 _KEYS = {Stroke.LEFT: Key.LEFT, Stroke.RIGHT: Key.RIGHT, Stroke.UP: Key.UP, Stroke.DOWN: Key.DOWN,
          Stroke.SPACE: Key.SPACE}
+_VERDICTS = {Stroke.GOOD: Verdict.SUCCESS, Stroke.BAD: Verdict.FAILURE, Stroke.DISCARD: Verdict.DISCARD}
 _REPEAT_EVERY = 0.08
 """The state of the keys is repeated after this, s."""
 _MESSAGE_FOR = 8.0
@@ -64,6 +67,7 @@ class Panel:
         self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
         self._ticks = 0
         self.requests = Requests(node, self.tell)
+        self._judge = Judge(node, self.tell)
         self._observer = Observer(node, task)
         self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit, keystroke=keystroke,
                             in_session=in_session)
@@ -110,6 +114,8 @@ class Panel:
         elif stroke is Stroke.PAUSE:
             self._paused_stamp_ns = self._observer.stamp_ns
             self.requests.toggle_pause()
+        elif stroke in _VERDICTS:
+            self._judge.say(self._scene, _VERDICTS[stroke])
         elif stroke is Stroke.REDRAW:
             self.terminal.redraw()
 
@@ -135,8 +141,10 @@ class Panel:
         if lesson.restarts != self._restarts:
             self._restarts = lesson.restarts
             scene.returns.clear()
+            scene.discarded.clear()
         scene.phase, scene.episode = lesson.phase, lesson.episode
         self._observer.update(scene)
+        self._judge.update(scene)
         self._notice_resumption()
         scene.human = tuple(sources.moment.tolist())
         if lesson.phase not in (None, 'teach', 'learn'):

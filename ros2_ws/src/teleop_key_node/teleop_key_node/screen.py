@@ -2,6 +2,7 @@
 
 import math
 
+from shared_control.verdict import Verdict
 from shared_control.wrench import AXIS_NAMES
 from shared_control_ros.watching.scene import Scene
 from shared_control_ros.watching.words import NO_LESSON, STARTING, Words, words_for
@@ -29,6 +30,7 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
         (2, ''),
         (3, _share(scene, width, unicode)),
         (3, _returns(scene, width, unicode)),
+        (4, _verdict(scene, width)),
         (7, _message(scene)), (8, _help(scene, width, unicode))]
     if not _message(scene):
         below[-2] = (1, '')
@@ -176,16 +178,31 @@ def _share(scene: Scene, width: int, unicode: bool) -> str:
 
 def _returns(scene: Scene, width: int, unicode: bool) -> str:
     text = ''
-    if scene.returns:
+    if returns := scene.counted_returns:
         sparks = _SPARKS[unicode]
-        shown = scene.returns[-max(min(width - 46, 40), 8):]
+        shown = returns[-max(min(width - 46, 40), 8):]
         low, high = min(shown), max(shown)
         span = (high - low) or 1.0
         levels = ''.join(sparks[round((value - low) / span * (len(sparks) - 1))] for value in shown)
-        text = f' {"score":14} {levels}  last {shown[-1]:.0f}, best {max(scene.returns):.0f}'
+        text = f' {"score":14} {levels}  last {shown[-1]:.0f}, best {max(returns):.0f}'
     if scene.success is not None:
         text += f'   last test {100 * scene.success:.0f} %'
     return text
+
+
+def _verdict(scene: Scene, width: int) -> str:
+    """What the person may say of the last episode, or has said."""
+    if scene.ended is None:
+        return ''
+    phase, number = scene.ended
+    what = f' {"test" if phase == "test" else "episode"} {number}'
+    keys = [f'{key}: {word}' for key, word, verdict in (
+        ('g', 'good', Verdict.SUCCESS), ('b', 'bad', Verdict.FAILURE), ('x', 'discard', Verdict.DISCARD))
+        if not (phase == 'test' and verdict is Verdict.DISCARD)]
+    said = {Verdict.SUCCESS: 'good', Verdict.FAILURE: 'bad', Verdict.DISCARD: 'discarded'}.get(scene.verdict)
+    if said is None:
+        return _fitting(width, f'{what}   {"   ".join(keys)}', f'{what}: g b x')
+    return _fitting(width, f'{what}: {said}   {"   ".join(keys)}   again: take back', f'{what}: {said}')
 
 
 def _help(scene: Scene, width: int, unicode: bool) -> str:

@@ -57,6 +57,9 @@ class Graph:
     def publisher(self, topic: contract.Topic):
         return self.node.create_publisher(topic.msg_type, topic.name, topic.qos)
 
+    def polled(self, topic: contract.Topic) -> Polled:
+        return Polled(self.node, topic, depth=50)
+
     def press(self, *buttons: int, source: str = 'test') -> None:
         """One state of the buttons."""
         message = Joy(buttons=buttons)

@@ -15,7 +15,7 @@ SECOND = 1_000_000_000
     (b'\x1b[1;5C', [Stroke.RIGHT]),
     (b'aAdD ', [Stroke.LEFT, Stroke.LEFT, Stroke.RIGHT, Stroke.RIGHT, Stroke.SPACE]),
     (b'qp\x0c', [Stroke.FINISH, Stroke.PAUSE, Stroke.REDRAW]),
-    (b'\x1b[A\x1b[3~xyz\xc3\xa4\x1b[200~', []),
+    (b'\x1b[A\x1b[3~uyz\xc3\xa4\x1b[200~', []),
     (b'\x1ba', [Stroke.LEFT]),
     (b'\x1b[[A\x1b[[C\x1b[[Da', [Stroke.LEFT]),  # F1, F3, F4 of the Linux console
     (b'\x1bOP\x1b[15~\x1b[1;2Pa', [Stroke.LEFT]),

@@ -83,6 +83,27 @@ def test_keys_rest_unless_the_robot_is_taught(graph, start):
     graph.expect(0.0)
 
 
+def test_buttons_of_a_joy_judge_the_last_episode(graph, start):
+    heard = graph.polled(contract.HUMAN_VERDICT)
+    start('screen:=off', 'source_timeout:=10.0', 'success_button:=5', 'discard_button:=7')
+    words = []
+
+    def said(*expected):
+        while (message := heard.take()) is not None:
+            words.append(message.data)
+        return words == list(expected)
+    graph.press(0, 0, 0, 0, 0, 1, 1, 0, source='pad')  # down when it is first heard: no press
+    graph.press(0, 0, 0, 0, 0, 0, 0, 0, source='pad')
+    for _ in range(2):  # held
+        graph.press(0, 0, 0, 0, 0, 1, 0, 0, source='pad')
+    graph.until(lambda: said('success'), 'a verdict')
+    graph.press(0, 0, 0, source='page')  # has no such button
+    graph.press(0, 0, 0, 0, 0, 1, 1, 1, source='pad')  # the sixth has no verdict
+    graph.until(lambda: said('success', 'discard'), 'another')
+    graph.press(1, 0, 0, source='pad')
+    graph.expect(5.0)
+
+
 def test_zero_is_the_last_that_is_published(graph, start):
     process = start('screen:=off', 'source_timeout:=10.0')
     graph.press(1, 0, 0)
@@ -107,9 +128,16 @@ def test_stamps_follow_simulation_time(graph, start):
         graph.until(ticked, 'the tick of the clock')
 
 
+def test_a_button_has_one_verdict(run_to_its_end):
+    result = run_to_its_end('success_button:=5', 'failure_button:=5')
+    assert result.returncode == 2
+    assert 'which has another verdict already' in result.stderr
+
+
 @pytest.mark.parametrize(('parameter', 'said'), [
     ('rate:=0.0', "parameter 'rate' is out of range (10.0 to 200.0)"),
     ('screen:=always', "parameter 'screen' has no choice 'always'"),
+    ('discard_button:=4', "parameter 'discard_button' is 4, but buttons 0 to 4 are the keys: choose 5 or a higher one"),
 ])
 def test_a_wrong_parameter_is_named(parameter, said, run_to_its_end):
     result = run_to_its_end(parameter)

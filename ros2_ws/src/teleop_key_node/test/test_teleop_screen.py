@@ -7,6 +7,7 @@ import pytest
 from shared_control.tasks.balance import Balance
 from shared_control.tasks.detour import Detour
 from shared_control.tasks.plate import Plate
+from shared_control.verdict import Verdict
 from shared_control_ros.watching.outcome import outcome_of
 from shared_control_ros.watching.scene import Parts, Scene
 from teleop_key_node.picture import draw
@@ -104,6 +105,12 @@ def test_bars_keep_to_their_place_beyond_the_scale():
     ({}, '▁██  last 40, best 40   last test 95 %'),
     ({}, 'episode 3   time left  9.4 s'),
     ({'message': ' hello'}, ' hello'),
+    ({'ended': ('teach', 2)}, ' episode 2   g: good   b: bad   x: discard '),
+    ({'ended': ('teach', 2), 'verdict': Verdict.SUCCESS},
+     ' episode 2: good   g: good   b: bad   x: discard   again: take back'),
+    ({'ended': ('test', 1)}, ' test 1   g: good   b: bad  '),
+    ({'discarded': {2}}, 'last -200, best -200'),
+    ({'discarded': {1}}, 'last 40, best 40'),
 ])
 def test_what_is_said(changes, said):
     assert said in '\n'.join(render(replace(SCENE, **changes), 80, 24))

@@ -6,6 +6,7 @@ import termios
 import time
 
 import pytest
+from diagnostic_msgs.msg import KeyValue
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
@@ -154,6 +155,35 @@ def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
     ask(b'p', 3)
     assert asked == ['finish', True, False]
     executor.shutdown()
+
+
+def test_the_person_judges_the_last_episode(graph, start_in_terminal):
+    heard, verdict = graph.polled(contract.HUMAN_VERDICT), graph.publisher(contract.VERDICT)
+    terminal = start_in_terminal()
+    graph.until(verdict.get_subscription_count, 'the screen hears')
+    terminal.type(b'x')
+    terminal.expect('No episode has ended yet')
+    verdict.publish(KeyValue(key='teach 3', value=''))
+    terminal.expect('episode 3')
+    terminal.expect('g: good   b: bad   x: discard')
+    words = []
+
+    def said(*expected: str) -> bool:
+        while (message := heard.take()) is not None:
+            words.append(message.data)
+        return words == list(expected)
+    for key, word in ((b'g', 'success'), (b'B', 'failure'), (b'x', 'discard')):
+        time.sleep(4 * HeldKeys.REPEATS_WITHIN)
+        terminal.type(key)
+        words.clear()
+        graph.until(lambda word=word: said(word), word)
+    verdict.publish(KeyValue(key='teach 3', value='discard'))
+    terminal.expect('episode 3: discarded')
+    terminal.expect('the robot forgets it')
+    verdict.publish(KeyValue(key='test 1', value=''))
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
+    terminal.type(b'x')
+    terminal.expect('cannot be discarded')
 
 
 def test_continued_the_terminal_is_set_up_anew(graph, start_in_terminal):

@@ -1,14 +1,16 @@
 """How the ball moved in each episode, from a bag."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from shared_control import contract
 from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import RobotModel
+from shared_control.verdict import Verdict, episode_key
 
 from .reader import Bag
+from .verdicts import last_verdicts
 
 _PERIOD_NS = round(POLICY_PERIOD * 1e9)
 _JUMP = 0.03
@@ -33,6 +35,8 @@ class EpisodeTrack:
     """(n, 2), where the ball was on the tray, in the tray's frame, m"""
     failed: bool
     """Whether the task failed (the ball fell)."""
+    verdict: Verdict = Verdict.NONE
+    """What a person has said of it."""
 
     @property
     def end_ns(self) -> int:
@@ -41,10 +45,14 @@ class EpisodeTrack:
 
 
 def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
-    """The finished episodes of a bag in their order. One that was broken off, and began again, is left out."""
+    """The finished episodes of a bag in their order, with those that a person has discarded.
+
+    One that was broken off, and began again, is left out.
+    """
     starts, ends = bag.training[contract.EPISODE], bag.training[contract.EPISODE_RETURN]
     model = RobotModel()
-    tracks = []
+    tracks: list[EpisodeTrack] = []
+    ended_ns: list[int] = []
     for index, (start_ns, number) in enumerate(zip(starts.received_ns, starts.values, strict=True)):
         next_ns = starts.received_ns[index + 1] if index + 1 < len(starts.received_ns) else bag.end_ns
         ended = ends.received_ns[(ends.received_ns > start_ns) & (ends.received_ns <= next_ns)]
@@ -56,11 +64,14 @@ def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
             continue
         samples = _thinned(bag.ball.stamp_ns[first:last]) + first
         stamps = bag.ball.stamp_ns[samples]
+        ended_ns.append(int(ended[0]))
         tracks.append(EpisodeTrack(
             int(number), _phase(bag, (int(start_ns) + int(ended[0])) // 2), int(stamps[0]),
             (int(bag.ball.received_ns[first]), int(bag.ball.received_ns[last - 1])),
             (stamps - stamps[0]) * 1e-9, *_seen(bag, samples, model)))
-    return tracks
+    verdicts = last_verdicts(bag, [(at, episode_key(track.phase, track.number))
+                                   for at, track in zip(ended_ns, tracks, strict=True)])
+    return [replace(track, verdict=verdict) for track, verdict in zip(tracks, verdicts, strict=True)]
 
 
 def broken_off(bag: Bag) -> list[tuple[int, float]]:

@@ -21,12 +21,13 @@ from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 
 from .chunks import Block, OutOfOrder, read_blocks
 from .fast_decode import BulkTopic, Columns, Row, command_layout, joint_state_layout, odometry_layout, wrench_layout
 from .files import BagReadError
 from .metadata import is_finished
-from .recorded import BallTrack, Commands, JointStates, Press, Series, Status, Ticks, Wrenches
+from .recorded import BallTrack, Commands, JointStates, Judgement, Press, Series, Status, Ticks, Wrenches
 from .task import recorded_task, reported_task
 from .ticks import JointStateRows, digests, to_ns
 
@@ -69,6 +70,7 @@ class Bag:
     training: dict[Topic, Series]
     """By topic: those of ``contract.TRAINING``."""
     presses: list[Press]
+    judgements: list[Judgement]
     statuses: dict[str, list[Status]]
     """Reports on /diagnostics, by the name of the node."""
 
@@ -180,9 +182,11 @@ class _Collector:
         self._rows: dict[str, list[tuple[int, Any]]] = {topic.full_name: [] for topic in contract.TRAINING}
         self._one_by_one: dict[str, Callable[[int, Any], None]] = {
             **{topic: partial(self._add_value, topic) for topic in self._rows},
-            contract.KEYS.full_name: self._add_keys, contract.DIAGNOSTICS.full_name: self._add_statuses}
+            contract.KEYS.full_name: self._add_keys, contract.VERDICT.full_name: self._add_judgement,
+            contract.DIAGNOSTICS.full_name: self._add_statuses}
         self._keys: dict[str, KeyPresses] = {}
         self._presses: list[Press] = []
+        self._judgements: list[Judgement] = []
         self._statuses: dict[str, list[Status]] = {}
         self._times: list[int] = []
         self._set_back_ns = 0
@@ -264,7 +268,7 @@ class _Collector:
             agent_applied=self._wrenches(contract.AGENT_APPLIED),
             ball=BallTrack(*_joined(self._ball, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
             training={topic: self._series(topic) for topic in contract.TRAINING},
-            presses=self._presses, statuses=self._statuses, unusable=dict(+self._unusable))
+            presses=self._presses, judgements=self._judgements, statuses=self._statuses, unusable=dict(+self._unusable))
 
     def _series(self, topic: Topic) -> Series:
         rows = self._rows[topic.full_name]
@@ -320,6 +324,12 @@ class _Collector:
             self._unusable[contract.KEYS.full_name] += 1
             return
         self._presses += [Press(received_ns, source, key) for key in pressed]
+
+    def _add_judgement(self, received_ns: int, message: Any) -> None:
+        try:
+            self._judgements.append(Judgement(received_ns, message.key, Verdict(message.value)))
+        except ValueError:
+            self._unusable[contract.VERDICT.full_name] += 1
 
     def _add_statuses(self, received_ns: int, message: Any) -> None:
         for status in message.status:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from shared_control.keys import Key
+from shared_control.verdict import Verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +108,16 @@ class Press:
     received_ns: int
     source: str
     key: Key
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What a person has said of an episode, or taken back."""
+
+    received_ns: int
+    episode: str
+    """As ``episode_key`` names it."""
+    verdict: Verdict
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from shared_control.plant import PlantState
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import RobotModel, pitch
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
@@ -57,6 +58,8 @@ class EpisodeFrames:
     """Whether the task failed; else time was up."""
     succeeded: bool
     """Whether the task calls the episode a success."""
+    verdict: Verdict
+    """What a person has said of it: success, failure, or nothing."""
     applied: np.ndarray
     """The sum of both moments as applied, (n, k), N m"""
     agent: np.ndarray | None
@@ -67,16 +70,21 @@ class EpisodeFrames:
     def __len__(self) -> int:
         return len(self.stamp_ns)
 
+    @property
+    def is_success(self) -> bool:
+        """As the person has it, and the task when no person has judged the episode."""
+        return self.verdict is Verdict.SUCCESS if self.verdict else self.succeeded
+
 
 def episode_frames(bag: Bag) -> list[EpisodeFrames]:
-    """The finished episodes of a bag, in their order.
+    """The finished episodes of a bag, in their order, without those that a person has discarded.
 
     A controller that publishes no parts of the sum (another one, or of the first version) leaves ``agent`` and
     ``human`` out.
 
     Raises:
-        ValueError: it has no finished episode, or nothing was applied, or one of the two parts alone; the message
-            names the bag.
+        ValueError: it has no finished episode that counts, or nothing was applied, or one of the two parts alone; the
+            message names the bag.
     """
     if not len(bag.applied.stamp_ns):
         raise ValueError(f'the bag {bag.path} has no messages on {contract.APPLIED_WRENCH.full_name}: what moved the '
@@ -87,9 +95,11 @@ def episode_frames(bag: Bag) -> list[EpisodeFrames]:
         missing, = (name for name, there in parts.items() if not there)
         raise ValueError(f'the bag {bag.path} has no messages on {missing}, but the other part of the sum: it is not '
                          'whole')
-    frames = [_frames(bag, track, all(parts.values())) for track in episode_tracks(bag)]
+    tracks = episode_tracks(bag)
+    frames = [_frames(bag, track, all(parts.values())) for track in tracks if track.verdict is not Verdict.DISCARD]
     if not frames:
-        raise ValueError(f'the bag {bag.path} holds no finished episode')
+        discarded = ' that was not discarded' if tracks else ''
+        raise ValueError(f'the bag {bag.path} holds no finished episode{discarded}')
     return frames
 
 
@@ -127,7 +137,7 @@ def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool) -> EpisodeFrames:
         observation=np.array([task.observe(state) for state in states])[:count],
         reward=np.array([sum(task.reward_terms(state).values()) for state in states])[1:],
         failed=track.failed, succeeded=bool(task.succeeded(errors[1:], speeds[1:], track.failed)),
-        applied=moments['applied'], agent=moments.get('agent'), human=moments.get('human'))
+        verdict=track.verdict, applied=moments['applied'], agent=moments.get('agent'), human=moments.get('human'))
 
 
 def _session(bag: Path) -> str:

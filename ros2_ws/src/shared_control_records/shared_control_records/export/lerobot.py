@@ -28,7 +28,7 @@ from .frames import EpisodeFrames
 VERSION = 'v3.0'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
-EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome')
+EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome', 'verdict')
 """What the list of episodes has of ours, beside what LeRobot asks for."""
 
 
@@ -136,8 +136,9 @@ def _common(episodes: list[EpisodeFrames]) -> tuple[Task, bool]:
     return next(iter(found))
 
 
-def _of_the_session(episode: EpisodeFrames) -> tuple[str, int, str, str]:
-    return episode.session, episode.number, episode.phase, 'success' if episode.succeeded else 'failure'
+def _of_the_session(episode: EpisodeFrames) -> tuple[str, int, str, str, str]:
+    outcome = 'success' if episode.succeeded else 'failure'
+    return episode.session, episode.number, episode.phase, outcome, str(episode.verdict)
 
 
 def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.ndarray]:
@@ -149,7 +150,7 @@ def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.nda
         _along(episode, episode.agent), _along(episode, episode.human), episode.human.any(axis=1))
     values = (
         episode.observation, episode.observation, _along(episode, episode.applied), *parts, episode.reward, last,
-        last & (not episode.failed), last & episode.succeeded, episode.q, episode.qd,
+        last & (not episode.failed), last & episode.is_success, episode.q, episode.qd,
         np.column_stack([episode.ball_position, episode.ball_velocity]), frames * POLICY_PERIOD, frames,
         np.full(count, index), frames + start, np.zeros(count))
     named = features(episode.task, episode.human is not None)

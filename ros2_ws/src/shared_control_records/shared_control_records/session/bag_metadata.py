@@ -84,7 +84,7 @@ def _row(bag: Bag, track: EpisodeTrack) -> EpisodeRow:
         number=track.number, phase=track.phase, seconds=float(track.seconds[-1]),
         episode_return=float(returns.values[ended]) if ended < len(returns.values) else None,
         fallen=track.failed, human_share=float(shares.values[shared]) if shared >= 0 else None,
-        intervention_rate=_intervention_rate(bag, track))
+        intervention_rate=_intervention_rate(bag, track), verdict=track.verdict)
 
 
 def _intervention_rate(bag: Bag, track: EpisodeTrack) -> float | None:

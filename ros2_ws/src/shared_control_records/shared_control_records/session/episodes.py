@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from shared_control.files import write_atomically
+from shared_control.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,13 @@ class EpisodeRow:
     """Mean of |human| / (|human| + |robot|) over the moments of the steps, 0..1"""
     intervention_rate: float | None = None
     """Part of the steps in which the human gave a moment, 0..1"""
+    verdict: Verdict = Verdict.NONE
+    """What a person has said of it."""
+
+    @property
+    def counts(self) -> bool:
+        """Whether nobody has discarded it."""
+        return self.verdict is not Verdict.DISCARD
 
 
 def read_episodes(path: Path) -> list[EpisodeRow]:
@@ -41,7 +49,8 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
                     number=int(row['episode']), phase=row['phase'], seconds=_number(row, 'seconds'),
                     episode_return=_number(row, 'return'), fallen=None if fallen is None else bool(fallen),
                     human_share=_number(row, 'human_share'),
-                    intervention_rate=_number(row, 'intervention_rate')))
+                    intervention_rate=_number(row, 'intervention_rate'),
+                    verdict=Verdict(row.get('verdict') or '')))
             except (KeyError, ValueError, TypeError) as error:
                 raise ValueError(f'{path}, line {line}: no usable episode ({error!r})') from error
     return rows
@@ -51,9 +60,10 @@ def write_episodes(rows: list[EpisodeRow], path: Path) -> None:
     """Write a table that :func:`read_episodes` reads; what is None stays empty."""
     text = io.StringIO(newline='')
     writer = csv.writer(text)
-    writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share', 'intervention_rate'))
+    writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share', 'intervention_rate', 'verdict'))
     writer.writerows((row.number, row.phase, row.seconds, row.episode_return,
-                      None if row.fallen is None else int(row.fallen), row.human_share, row.intervention_rate)
+                      None if row.fallen is None else int(row.fallen), row.human_share, row.intervention_rate,
+                      row.verdict)
                      for row in rows)
     write_atomically(path, text.getvalue().encode())
 

@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 from shared_control.wrench import AXIS_NAMES
 
 from ..bag.ball_tracks import EpisodeTrack
@@ -54,12 +55,12 @@ def draw_picture(path: Path, title: str, footer: str, bag: Bag | None, tracks: S
         path: of the PNG; an SVG and a PDF are written beside it.
         title: who taught whom.
         footer: where it comes from (:func:`shared_control_records.plotting.plot.origin`).
-        tracks: finished episodes; taught ones are drawn.
-        rows: table of episodes; taught ones are drawn.
+        tracks: finished episodes; taught ones are drawn that nobody has discarded.
+        rows: table of episodes, likewise.
         task: what was learned; with two axes tracks are drawn from above.
     """
-    taught = [track for track in tracks if track.phase == 'teach']
-    rows = [row for row in rows if row.phase == 'teach']
+    taught = [track for track in tracks if track.phase == 'teach' and track.verdict is not Verdict.DISCARD]
+    rows = [row for row in rows if row.phase == 'teach' and row.counts]
     with matplotlib.rc_context(STYLE):
         sheet = Sheet(13, 11.5, w_pad=0.12, h_pad=0.12, hspace=0.04, wspace=0.03)
         figure = sheet.content

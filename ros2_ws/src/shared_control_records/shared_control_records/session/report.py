@@ -60,6 +60,7 @@ def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None
     environment.filters['base64'] = lambda content: base64.b64encode(content).decode()
     return environment.from_string(_PAGE.read_text()).render(
         css=Markup(STYLE_SHEET.read_text()), title=_title(summary), s=summary, rows=rows, test=test,
+        judged=any(row.verdict for row in rows),
         figures=_figures(summary), done=_done(summary), panels=panels, origin=_origin(summary))
 
 

@@ -32,10 +32,12 @@ class Summary:
     duration_s: float | None
     """From the first to the last message of the bag, by the clock on the wall."""
     episodes_taught: int | None
+    """Without those that a person has discarded."""
+    episodes_discarded: int | None
     episodes_broken_off: int | None
     """Episodes of teaching that the robot has not learned from: repeated, stopped, or cut short by a fault."""
     taught_s: float | None
-    """How long the robot was taught by its own time, episodes broken off included."""
+    """How long the robot was taught by its own time, with episodes broken off and discarded."""
     key_presses: int | None
     autonomous_success: int | None
     """Episodes of the final test that succeeded."""
@@ -76,7 +78,7 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
     settings = folder.read_json(folder.settings) or {}
     tutor = _tutors(settings)
     timing = timing_of(bag) if bag else None
-    taught = [row for row in rows if row.phase == 'teach']
+    taught = [row for row in rows if row.phase == 'teach' and row.counts]
     broken_off = [row for row in rows if row.phase == BROKEN_OFF]
     return Summary(
         task=task.name, preset=settings.get('preset'), seed=settings.get('seed'),
@@ -85,8 +87,10 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
         simulated_tutor=None if tutor is None else 'simulated' in tutor,
         duration_s=round((bag.end_ns - bag.start_ns) * 1e-9, 3) if bag else None,
         episodes_taught=len(taught) if folder.episodes.exists() else None,
+        episodes_discarded=sum(not row.counts for row in rows) if folder.episodes.exists() else None,
         episodes_broken_off=len(broken_off) if folder.episodes.exists() else None,
-        taught_s=round(sum(row.seconds or 0.0 for row in (*taught, *broken_off)), 3) if rows else None,
+        taught_s=round(sum(row.seconds or 0.0 for row in rows if row.phase in ('teach', BROKEN_OFF)), 3)
+        if rows else None,
         key_presses=len(bag.presses) if bag else None,
         autonomous_success=test.successes if test else None,
         autonomous_episodes=len(test.episodes) if test else None,

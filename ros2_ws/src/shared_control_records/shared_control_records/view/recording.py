@@ -4,7 +4,7 @@
     world/moments/human, agent, applied          the moment at the tray as an arrow along its axis
     moments/AXIS/human, agent, applied           N m, a chart for each axis of the task
     ball/position_error, training/...            charts
-    log/phase, log/keys                          lines of text
+    log/phase, log/keys, log/verdict             lines of text
 """
 
 from collections.abc import Iterator
@@ -43,14 +43,18 @@ def log_bag(bag: Bag, recording: rr.RecordingStream) -> None:
     phases = bag.training[contract.PHASE]
     lines = [(at, 'log/phase', str(phase)) for at, phase in zip(phases.received_ns, phases.values, strict=True)]
     lines += [(press.received_ns, 'log/keys', f'{press.source}: {press.key.name.lower()}') for press in bag.presses]
-    for entity in ('log/phase', 'log/keys'):
+    lines += [(judgement.received_ns, 'log/verdict', f'{judgement.episode}: {judgement.verdict or "taken back"}')
+              for judgement in bag.judgements]
+    for entity in ('log/phase', 'log/keys', 'log/verdict'):
         found = [(at, text) for at, where, text in lines if where == entity]
         if found:
             _send(recording, entity, bag, np.array([at for at, _ in found]),
                   rr.TextLog.columns(text=[text for _, text in found]))
     for track in episode_tracks(bag):
-        begin = np.searchsorted(bag.ball.stamp_ns, track.start_ns)
-        received = bag.ball.received_ns[begin:begin + len(track.position_error)]
+        first, last = np.searchsorted(bag.ball.received_ns, track.received_ns)
+        stamps = track.start_ns + np.round(track.seconds * 1e9).astype(np.int64)
+        samples = np.searchsorted(bag.ball.stamp_ns[first:last + 1], stamps) + first
+        received = bag.ball.received_ns[samples.clip(max=last)]
         _send(recording, 'ball/position_error', bag, received, rr.Scalars.columns(scalars=track.position_error))
 
 
@@ -64,7 +68,7 @@ def blueprint(bag: Bag) -> rrb.Blueprint:
                 rrb.Spatial3DView(origin='world', name=bag.task.name),
                 rrb.Vertical(*charts, rrb.TimeSeriesView(origin='ball', name='position error (m)'),
                              rrb.TimeSeriesView(origin='training', name='training'))),
-            rrb.TextLogView(origin='log', name='phases and keys'), row_shares=[4, 1]),
+            rrb.TextLogView(origin='log', name='phases, keys, verdicts'), row_shares=[4, 1]),
         rrb.TimePanel(timeline=TIMELINE))
 
 

@@ -11,6 +11,7 @@ from sensor_msgs.msg import JointState
 from shared_control.robot.model import RobotModel, pitch
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict, split_episode_key
 
 from .. import contract
 from ..fast_loop import Polled
@@ -44,6 +45,7 @@ class Observer:
         self._success = Polled(node, contract.SUCCESS, qos_profile=latest)
         self._waiting = Polled(node, contract.WAITING, qos_profile=latest)
         self._returns = Polled(node, contract.EPISODE_RETURN, qos_profile=contract.qos_latched())
+        self._verdicts = Polled(node, contract.VERDICT, qos_profile=contract.qos_latched())
         self._task = task
         self._episode_phase: str | None = None
         self._begun: tuple[str | None, int | None] = None, None
@@ -76,9 +78,22 @@ class Observer:
         while (message := self._returns.take()) is not None:
             if math.isfinite(message.data):
                 scene.returns.append(message.data)
+                scene.verdict = Verdict.NONE
                 scene.outcome = outcome_of(
                     self._task, self._episode_phase, scene.time_left,
                     None if scene.ball_on_tray is None else scene.ball_on_tray.tolist())
+        self._read_verdicts(scene)
+
+    def _read_verdicts(self, scene: Scene) -> None:
+        """The newest is about the last episode that has ended; at its end it is empty."""
+        while (message := self._verdicts.take()) is not None:
+            try:
+                scene.ended, scene.verdict = split_episode_key(message.key), Verdict(message.value)
+            except ValueError as error:
+                self._drop(self._verdicts, str(error))
+        if scene.returns:
+            last = len(scene.returns) - 1
+            scene.discarded = scene.discarded - {last} | ({last} if scene.verdict is Verdict.DISCARD else set())
 
     def _read_time_left(self, scene: Scene) -> None:
         """The topic means the episode while there is one, and the break otherwise."""

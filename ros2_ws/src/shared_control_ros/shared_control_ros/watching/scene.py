@@ -8,6 +8,7 @@ from shared_control.keys import KEYSTROKE
 from shared_control.scene import Scene as TaskScene
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 
 from .outcome import Outcome, has_left
 
@@ -62,6 +63,12 @@ class Scene:
     """How the last episode ended; None once the next one has begun."""
     returns: list[float] = field(default_factory=list)
     """Returns of the episodes so far."""
+    discarded: set[int] = field(default_factory=set)
+    """Which of ``returns`` are those of episodes that were discarded."""
+    ended: tuple[str, int] | None = None
+    """Phase and number of the last episode that has ended: the one that a verdict is about."""
+    verdict: Verdict = Verdict.NONE
+    """What a person has said of it."""
     success: float | None = None
     """Share of the last test that succeeded, 0..1."""
     in_session: bool = False
@@ -75,6 +82,11 @@ class Scene:
     """What the session waits for, since when, and in a second line why; empty: nothing, or there is no session."""
     message: str = ''
     """The latest notice to the person."""
+
+    @property
+    def counted_returns(self) -> list[float]:
+        """Returns of the episodes that were not discarded."""
+        return [value for index, value in enumerate(self.returns) if index not in self.discarded]
 
     @property
     def tray(self) -> TaskScene:

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from shared_control.tasks.task import Task
+from shared_control.verdict import Verdict
 
 
 class Words(NamedTuple):
@@ -32,3 +33,21 @@ def words_for(task: Task) -> dict[str, Words]:
         return PHASES
     teach = PHASES['teach']
     return {**PHASES, 'teach': Words(teach.title, f'{task.instruction} Push when the robot errs.')}
+
+
+NOTHING_TO_JUDGE = 'No episode has ended yet: there is nothing to judge.'
+ALL_TESTS_COUNT = 'An episode of a test cannot be discarded: all count.'
+
+
+def words_of_verdict(phase: str, number: int, verdict: Verdict, is_running: bool) -> str:
+    """What has become of an episode by a person's verdict.
+
+    Args:
+        is_running: whether the next episode has begun, so that the robot keeps what it has learned.
+    """
+    what = f'{"Test" if phase == "test" else "Episode"} {number}'
+    if verdict is Verdict.DISCARD:
+        return f'{what} is discarded: ' + (
+            'it counts nowhere, but the robot has learned from it.' if is_running else
+            'the robot forgets it. The same again keeps it.')
+    return f'{what}: {verdict}.' if verdict else f'{what}: your verdict is taken back.'

@@ -1,8 +1,9 @@
-// The buttons of the lesson, and the keys that press some of them: p pauses, Enter begins to teach.
+// The buttons of the lesson, and the keys that press some of them: p pauses, Enter begins to teach, g, b and x judge.
 
 import { askToPause, askWhetherDone, isPractice, isTooSoon } from "./panel.js";
 import { part } from "./parts.js";
 
+const VERDICTS = { g: "success", b: "failure", x: "discard" };
 const SETTLE_MS = 700; // a question that has just come is not answered by a second click
 
 export function listenToButtons(send) {
@@ -18,6 +19,8 @@ export function listenToButtons(send) {
     askToPause();
     send({ do: "pause" });
   };
+
+  for (const verdict of Object.values(VERDICTS)) on(`judge-${verdict}`, () => send({ do: "judge", value: verdict }));
 
   on("start", say("start"));
   on("take-seat", say("take_seat"));
@@ -41,7 +44,9 @@ export function listenToButtons(send) {
 
   window.addEventListener("keydown", (event) => {
     if (event.repeat || event.ctrlKey || event.altKey || event.metaKey || document.body.classList.contains("watching")) return;
-    if (event.key.toLowerCase() === "p") pause();
+    const verdict = VERDICTS[event.key.toLowerCase()];
+    if (verdict) send({ do: "judge", value: verdict });
+    else if (event.key.toLowerCase() === "p") pause();
     else if (event.key === "Enter" && document.activeElement === document.body && isPractice()) send({ do: "start" });
   });
 }

@@ -138,10 +138,20 @@ function showButtons(picture) {
   show("pause", role.teaches && phase !== "done");
   setText("pause-text", picture.paused ? "Go on" : "Pause");
   show("stop", role.teaches && phase !== "done");
+  showVerdict(picture);
   show("ending", canFinish && picture.ends_teaching);
   show("sure", canFinish && !picture.ends_teaching && asksWhetherDone);
   show("finish", canFinish && !picture.ends_teaching && !asksWhetherDone);
   part("finish").classList.toggle("soon", isTooSoon());
+}
+
+// What a person may say of the last episode that has ended, and has said.
+function showVerdict({ ended, verdict }) {
+  show("judge", role.teaches && ended !== null);
+  if (ended === null) return;
+  setText("judged", `${ended[0] === "test" ? "Test" : "Episode"} ${ended[1]}`);
+  for (const name of ["success", "failure", "discard"]) part(`judge-${name}`).setAttribute("aria-pressed", String(verdict === name));
+  part("judge-discard").disabled = ended[0] === "test";
 }
 
 // A second click, meant for what stood there before, is none on what stands there now.

@@ -5,6 +5,7 @@ import { part, setText } from "./parts.js";
 const JUMP = 5; // s
 const AT_ONCE = 0.3; // s: the episode that has just begun is not the one before
 const NEAREST = 0.035; // of the slider, between two marks that have room for their names
+const SIGNS = { success: "✓", failure: "✗" }; // of a person's verdict; what was discarded is struck out
 
 const marks = window.teachPage.marks;
 let replay = { position: 0, length: 1, speed: 1, plays: false };
@@ -49,14 +50,15 @@ export function showPlayer(newReplay) {
 function drawMarks() {
   markedLength = replay.length;
   let named = -1;
-  part("marks").replaceChildren(...marks.map(([at, name]) => {
+  part("marks").replaceChildren(...marks.map(([at, name, verdict]) => {
     const mark = document.createElement("span");
     const where = at / replay.length;
     mark.style.left = `${100 * where}%`;
     mark.classList.toggle("test", name.startsWith("T"));
-    mark.title = `episode ${name}`;
+    mark.title = `episode ${name}${verdict && `: ${verdict === "discard" ? "discarded" : verdict}`}`;
+    mark.dataset.verdict = verdict;
     const hasRoom = where - named >= NEAREST;
-    mark.textContent = hasRoom ? name : "\u00a0";
+    mark.textContent = hasRoom ? name + (SIGNS[verdict] ?? "") : "\u00a0";
     if (hasRoom) named = where;
     return mark;
   }));
