@@ -138,7 +138,8 @@ def test_a_wrench_there_and_back():
     spec = SimpleNamespace(names=entry.select)
     message = encode(np.array([1.5, -2.0]), spec, 12_000_000_034)
     assert (message.wrench.torque.x, message.wrench.torque.y, message.wrench.torque.z) == (1.5, -2.0, 0.0)
-    assert (message.header.frame_id, message.header.stamp.sec, message.header.stamp.nanosec) == ('panda_link0', 12, 34)
+    stamp = message.header.stamp
+    assert (message.header.frame_id, stamp.sec, stamp.nanosec) == ('panda_link0', 12, 34)
     assert decode(message, spec).tolist() == [1.5, -2.0]
 
 
