@@ -240,3 +240,20 @@ def test_a_session_with_two_axes_is_reported_from_above(tmp_path, lessons, bag, 
     for (_, track), lesson in zip(taught, lessons, strict=True):
         assert np.ptp(track[:, 0]) == pytest.approx(np.ptp(lesson.position_error), abs=0.01)
     assert 'under 3 cm' in folder.report.read_text(), 'the radius of the goal of this task'
+
+
+@pytest.mark.parametrize('step_s', [-1, 3 * 10**8])
+def test_the_robots_time_was_set_between_episodes(tmp_path, step_s):
+    """By a simulator that was started anew after somebody had set the clock: back, or forward from 1970."""
+    lessons = [made.lesson(50, seed=seed) for seed in (1, 2)]
+    first = made.record(lessons[:1])
+    later = made.record(lessons[1:], start_ns=made.START_NS + step_s * 10**9)
+    shift = 3 * 10**9 - step_s * 10**9  # the recorder's clock was right all the while
+    recording = made.Recording([
+        *first.messages, *((topic, at + shift, content) for topic, at, content in later.messages)])
+    folder = SessionFolder.create(tmp_path / 'session')
+    recording.write(folder.bag)
+    made.write_episodes(folder.episodes, lessons)
+    made.write_settings(folder.settings)
+    write_report(folder)
+    assert folder.picture.read_bytes().startswith(PNG)

@@ -1,13 +1,15 @@
 """A moment in a wrench message: which components hold it, and what a usable message is."""
 
-import math
-
 import numpy as np
 from geometry_msgs.msg import WrenchStamped
 from shared_control.tasks.balance import BALANCE
 from shared_control.wrench import COMPONENTS
 
 from .contract import BASE_FRAME
+
+LARGEST = 1000.0
+"""N m. Nobody means more, ten times what a full action is worth in the thesis; the sum is limited to far less, but each
+part is recorded and learned from."""
 
 
 def base_wrench(frame: str = BASE_FRAME) -> WrenchStamped:
@@ -28,8 +30,8 @@ def moment_of(wrench: WrenchStamped, axes: tuple[int, ...] = BALANCE.axes, frame
     """The moment along a task's axes in the base's ``frame``, (k,), N m.
 
     Raises:
-        ValueError: the wrench is given in another frame than the base's, or a component is not finite; the message
-            says which.
+        ValueError: the wrench is given in another frame than the base's, or a component is not finite or beyond
+            ``LARGEST``; the message says which.
     """
     if wrench.header.frame_id != frame:
         raise ValueError(f'frame_id is {wrench.header.frame_id!r}, expected {frame!r}')
@@ -37,7 +39,7 @@ def moment_of(wrench: WrenchStamped, axes: tuple[int, ...] = BALANCE.axes, frame
     for row in axes:
         part, component = COMPONENTS[row]
         value = getattr(getattr(wrench.wrench, part), component)
-        if not math.isfinite(value):
+        if not abs(value) <= LARGEST:  # nor NaN
             raise ValueError(f'{part}.{component} is {value}')
         values.append(value)
     return np.array(values)

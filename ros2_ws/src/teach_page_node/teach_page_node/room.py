@@ -135,7 +135,7 @@ class Room:
                 self._desk.let_go()
             else:
                 self._desk.do(message['do'], message.get('value'))
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             log.warning('dropped a message of a page: %s (%.100r)', error, text)
 
 

@@ -131,10 +131,10 @@ class TestRunningController:
         assert total == human == agent and 3 <= len(total) <= 4
 
     def test_the_sum_and_the_torque_rate_are_limited(self, robot):
-        robot.send(robot.human, 1e6)
+        robot.send(robot.human, 1000.0)
         torque = robot.tick()
         assert np.abs(torque - GRAVITY).max() <= 1.0 + 1e-12
-        assert robot.used() == [20.0, 1e6, 0.0], 'the parts are those before the limit'
+        assert robot.used() == [20.0, 1000.0, 0.0], 'the parts are those before the limit'
 
     def test_a_silent_source_fades_to_nothing(self, robot):
         robot.send(robot.human, 0.5)
@@ -157,6 +157,7 @@ class TestRunningController:
 
     @pytest.mark.parametrize(('fault', 'said'), [
         ({'m_y': float('nan')}, 'torque.y is nan'),
+        ({'m_y': 1e300}, 'torque.y is 1e+300'),
         ({'m_y': float('-inf')}, 'torque.y is -inf'),
         ({'m_y': 0.5, 'frame': 'world'}, "frame_id is 'world'"),
         ({'m_y': 0.5, 'age': 0.5}, 'old, more than command_timeout'),

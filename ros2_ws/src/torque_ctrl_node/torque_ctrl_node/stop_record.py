@@ -79,7 +79,7 @@ def _read(path: Path) -> dict[str, str | bool]:
         return {'left': bool(content['left']), 'starter': str(content['starter'])}
     except FileNotFoundError:
         raise
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {'left': False, 'starter': ''}
 
 

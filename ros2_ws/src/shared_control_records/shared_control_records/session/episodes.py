@@ -41,18 +41,21 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
     if not path.is_file():
         return []
     rows = []
-    with path.open(newline='') as file:
-        for line, row in enumerate(csv.DictReader(file), start=2):
-            try:
-                fallen = _number(row, 'fallen')
-                rows.append(EpisodeRow(
-                    number=int(row['episode']), phase=row['phase'], seconds=_number(row, 'seconds'),
-                    episode_return=_number(row, 'return'), fallen=None if fallen is None else bool(fallen),
-                    human_share=_number(row, 'human_share'),
-                    intervention_rate=_number(row, 'intervention_rate'),
-                    verdict=Verdict(row.get('verdict') or '')))
-            except (KeyError, ValueError, TypeError) as error:
-                raise ValueError(f'{path}, line {line}: no usable episode ({error!r})') from error
+    try:
+        content = list(csv.DictReader(path.read_text().splitlines()))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f'{path} is no table of episodes: {error}') from error
+    for line, row in enumerate(content, start=2):
+        try:
+            fallen = _number(row, 'fallen')
+            rows.append(EpisodeRow(
+                number=int(row['episode']), phase=row['phase'], seconds=_number(row, 'seconds'),
+                episode_return=_number(row, 'return'), fallen=None if fallen is None else bool(fallen),
+                human_share=_number(row, 'human_share'),
+                intervention_rate=_number(row, 'intervention_rate'),
+                verdict=Verdict(row.get('verdict') or '')))
+        except (KeyError, ValueError, TypeError) as error:
+            raise ValueError(f'{path}, line {line}: no usable episode ({error!r})') from error
     return rows
 
 

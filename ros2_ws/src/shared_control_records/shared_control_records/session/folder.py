@@ -102,7 +102,7 @@ class SessionFolder(RunFolder):
             content = json.loads(path.read_text())
         except FileNotFoundError:
             return None
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise RunFolderError(f'cannot read {path}: {error}') from error
         if not isinstance(content, dict):
             raise RunFolderError(f'cannot read {path}: expected a JSON object')
@@ -119,5 +119,5 @@ class SessionFolder(RunFolder):
             return dict(content.get(node, {}).get('ros__parameters', {}))
         except FileNotFoundError:
             return {}
-        except (OSError, yaml.YAMLError, AttributeError, TypeError, ValueError) as error:
+        except (OSError, yaml.YAMLError, AttributeError, TypeError, ValueError, RecursionError) as error:
             raise RunFolderError(f'cannot read {self.parameters}: {error}') from error

@@ -3,6 +3,7 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib
@@ -20,6 +21,8 @@ from shared_control.wrench import AXIS_NAMES
 
 from ..bag.ball_tracks import EpisodeTrack
 from ..bag.reader import Bag
+from ..bag.recorded import Wrenches
+from ..bag.runs import run_window
 from ..plotting.plot import Sheet
 from ..plotting.style import AGENT, BAD, FAINT, GOOD, HUMAN, SEQUENCE, STYLE, cross, say_empty
 from .episodes import EpisodeRow
@@ -31,6 +34,10 @@ BEYOND = 1.25
 DPI = 110
 ENDS_SHOWN = 4
 """This many of the first and of the last stand out of many episodes."""
+LONGEST_GAP = 600.0
+"""Between two episodes, s; a longer one is no pause: the robot's time was set."""
+GAP = 2.0
+"""Drawn instead, s."""
 MOMENT_BINS = 1500
 """Across the width of the picture."""
 
@@ -223,13 +230,12 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
         for axes in (human, agent):
             say_empty(axes, 'nothing recorded')
         return
-    start, end = taught[0].start_ns, taught[-1].end_ns
+    starts = _on_one_axis(taught)
     bound = 1.0
     for axes, wrenches, colour, label in (
             (human, bag.human_applied, HUMAN, f'Human\n{_symbols(bag.task, "h")} (N m)'),
             (agent, bag.agent_applied, AGENT, f'Robot\n{_symbols(bag.task, "ai")} (N m)')):
-        stamps = np.arange(start, end + 1, round(POLICY_PERIOD * 1e9))
-        seconds, moments = (stamps - start) * 1e-9, wrenches.moment_at(stamps)
+        seconds, moments = _moments_of(bag, wrenches, taught, starts)
         explores = wrenches is bag.agent_applied
         for row, moment, shade in zip(bag.task.axes, moments.T, _shades(colour, len(bag.task.axes)), strict=True):
             name = f'$M_{AXIS_NAMES[row][-1]}$' if len(bag.task.axes) > 1 else ''
@@ -243,16 +249,46 @@ def _draw_moments(human: Axes, agent: Axes, bag: Bag | None, taught: list[Episod
         bound = max(bound, np.abs(moments).max(initial=0.0))
         axes.set_ylabel(label)
         axes.axhline(0, color=FAINT, linewidth=0.8)
-        for index, track in enumerate(taught):
-            left, right = (track.start_ns - start) * 1e-9, (track.end_ns - start) * 1e-9
+        for index, (track, left) in enumerate(zip(taught, starts, strict=True)):
+            right = left + _duration(track)
             axes.axvspan(left, right, color=FAINT, alpha=0.10 if index % 2 == 0 else 0.03, linewidth=0)
     if len(taught) <= 30:
-        for track in taught:
-            human.annotate(str(track.number), ((track.start_ns - start) * 1e-9, 1), xytext=(3, -2),
+        for track, left in zip(taught, starts, strict=True):
+            human.annotate(str(track.number), (left, 1), xytext=(3, -2),
                            xycoords=('data', 'axes fraction'), textcoords='offset points', va='top',
                            fontsize=8.5, color=FAINT)
-    human.set(ylim=(-1.12 * bound, 1.12 * bound), xlim=(0, (end - start) * 1e-9))
+    human.set(ylim=(-1.12 * bound, 1.12 * bound), xlim=(0, right))
     agent.set_xlabel("Robot's time since the first episode (s); shaded and numbered: episodes")
+
+
+def _on_one_axis(taught: list[EpisodeTrack]) -> list[float]:
+    """Where each episode begins, s: the robot's time, but for where that was set, or stood for long."""
+    starts = [0.0]
+    for before, track in pairwise(taught):
+        gap = (track.start_ns - before.end_ns) * 1e-9
+        starts.append(starts[-1] + _duration(before) + (gap if 0.0 <= gap <= LONGEST_GAP else GAP))
+    return starts
+
+
+def _duration(track: EpisodeTrack) -> float:
+    return (track.end_ns - track.start_ns) * 1e-9
+
+
+def _moments_of(bag: Bag, wrenches: Wrenches, taught: list[EpisodeTrack], starts: list[float],
+                ) -> tuple[np.ndarray, np.ndarray]:
+    """The moments once a policy period, and when on the common axis: (n,), s, and (n, k), N m."""
+    seconds, moments, drawn_until = [], [], 0.0
+    for track, start in zip(taught, starts, strict=True):
+        own = wrenches.between(run_window(bag, track.received_ns[0]))
+        end = start + _duration(track)
+        at = np.arange(drawn_until, end, POLICY_PERIOD)
+        if len(own.stamp_ns):
+            seconds.append(at)
+            moments.append(own.moment_at(track.start_ns + np.round((at - start) * 1e9).astype(np.int64)))
+        drawn_until = end
+    if not seconds:
+        return np.zeros(1), np.zeros((1, len(bag.task.axes)))
+    return np.concatenate(seconds), np.concatenate(moments)
 
 
 def _symbols(task: Task, who: str) -> str:

@@ -1,7 +1,9 @@
 """What must hold in a session's folder, whatever befell it."""
 
 import json
+import struct
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +20,7 @@ from shared_control_records.bag.reader import Bag, BagReadError, read_bag
 from shared_control_records.bag.recorded import Wrenches
 from shared_control_records.session.folder import SessionFolder
 
+SOURCES = (contract.HUMAN_WRENCH, contract.AGENT_WRENCH)
 TICK_NS = 1_000_000
 EPSILON = 1e-9
 UNSEEN_SECONDS = 1.5
@@ -39,7 +42,7 @@ def violations(path: Path, recorder_killed_ns: list[int], lost_rows: bool) -> li
         bag = read_bag(folder.bag, every_tick=True)
     except BagReadError as error:
         return [f'bag: {error}']
-    return [*_torques(bag, panda()), *_moments(bag, 0.1), *_sums(bag), *_mcap(folder.bag, bag),
+    return [*_torques(bag, panda()), *_moments(bag, 0.1, _lost(folder.bag)), *_sums(bag), *_mcap(folder.bag, bag),
             *_recording(bag, recorder_killed_ns), *_learner(folder), *_table(folder, bag, lost_rows), *_report(folder)]
 
 
@@ -59,11 +62,34 @@ def _torques(bag: Bag, robot: RobotSpec) -> Iterator[str]:
         yield f'torque: beyond the rate at {too_fast.any(axis=1).sum()} ticks, at most {steps.max():.3f} N m in 1 ms'
 
 
-def _moments(bag: Bag, timeout: float) -> Iterator[str]:
+def _lost(path: Path) -> dict[str, np.ndarray]:
+    """By topic of a source, (n, 2): the stamps between which messages were sent that the recorder did not get, ns.
+
+    By the publisher's own count of its messages.
+    """
+    lost: dict[str, list[tuple[int, int]]] = {topic.full_name: [] for topic in SOURCES}
+    last: dict[str, tuple[int, int]] = {}
+    for file in sorted(path.glob('*.mcap')):
+        with file.open('rb') as stream, suppress(Exception):  # what mcap cannot read is another violation
+            for _, channel, message in make_reader(stream).iter_messages(list(lost)):
+                seconds, nanoseconds = struct.unpack_from('<iI', message.data, 4)
+                stamp_ns = seconds * 1_000_000_000 + nanoseconds
+                sequence, before_ns = last.get(channel.topic, (message.sequence, stamp_ns))
+                if message.sequence > sequence + 1:
+                    lost[channel.topic].append((before_ns, stamp_ns))
+                last[channel.topic] = message.sequence, stamp_ns
+    return {topic: np.array(pairs, np.int64).reshape(-1, 2) for topic, pairs in lost.items()}
+
+
+def _moments(bag: Bag, timeout: float, lost: dict[str, np.ndarray]) -> Iterator[str]:
     """No moment counts that nobody has asked for within its time-out."""
-    for name, asked, applied in (('human', bag.human, bag.human_applied), ('agent', bag.agent, bag.agent_applied)):
+    for name, topic, asked, applied in (('human', SOURCES[0], bag.human, bag.human_applied),
+                                        ('agent', SOURCES[1], bag.agent, bag.agent_applied)):
+        # What was lost on its way to the recorder may have come to the controller.
+        unknown = lost[topic.full_name] + round((timeout + FADE_TIME) * 1e9) * np.array([-1, 1])
         counted = applied.moment.any(axis=1)
-        old = [tick for tick in np.flatnonzero(counted) if not _asked_for(asked, applied, tick, timeout)]
+        old = [tick for tick in np.flatnonzero(counted) if not _asked_for(asked, applied, tick, timeout)
+               and not ((unknown[:, 0] <= applied.stamp_ns[tick]) & (applied.stamp_ns[tick] <= unknown[:, 1])).any()]
         if old:
             tick = old[0]
             yield (f'moment: the {name} moment {applied.moment[tick]} counted at {applied.stamp_ns[tick] * 1e-9:.3f} s '
