@@ -56,7 +56,7 @@ def taught(task: Task, seed: int, folder: Path) -> dict[str, Any]:
 
 def alone(task: Task, seed: int, folder: Path) -> dict[str, Any]:
     """PPO with nobody."""
-    chosen: Preset = replace(AUTONOMOUS if task.preset == 'coached' else ALONE_NETWORK, task=task)
+    chosen: Preset = replace(AUTONOMOUS if task.preset != 'coached_network' else ALONE_NETWORK, task=task)
     training = train(chosen, None, seed, ALONE_EPISODES, folder=folder, evaluate_every=ALONE_TESTED_EVERY)
     return {'skilled': training.skilled, 'episodes': training.episodes, **alone_in_the_end(folder, seed)}
 

@@ -55,7 +55,7 @@ def test_teaches_tests_and_keeps_everything(graph, start_node, observer, phases,
     taught, tested = read_rows(output / 'episodes.csv')
     assert (taught['phase'], taught['steps'], tested['phase'], tested['steps']) == ('teach', '200', 'test', '500')
     learner = load_policy(output / 'policy.safetensors')
-    assert (learner.episode, learner.seed, learner.name) == (1, 5, 'coached')
+    assert (learner.episode, learner.seed, learner.name) == (1, 5, 'guided')
     assert float(taught['return']) == pytest.approx(listened[contract.EPISODE_RETURN.name][0].data, rel=1e-4)
 
 

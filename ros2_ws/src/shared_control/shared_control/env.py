@@ -1,15 +1,25 @@
 """The Gymnasium environment of a task, on whatever plant it is given."""
 
-from typing import Any
+from typing import Any, Protocol
 
 import gymnasium
 import numpy as np
 
-from .plant import Plant
+from .plant import Plant, PlantState
 from .rates import POLICY_PERIOD
 from .robot.model import RobotModel
 from .tasks.balance import BALANCE
 from .tasks.task import OBSERVATION_BOUND, Observer, Task
+
+
+class Senses(Protocol):
+    """What stands between the plant and a learner's eyes: late, noisy."""
+
+    def reset(self, seed: int | None) -> None:
+        """A new episode begins."""
+
+    def perceive(self, state: PlantState) -> PlantState:
+        """What is seen when the plant is in ``state``; called once a policy period."""
 
 
 class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
@@ -26,14 +36,17 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         plant: in this process (``shared_control_sim.local_plant.LocalPlant``) or on the graph.
         task: the task.
         human_only: the agent's moment is not applied: the person alone moves the tray (4.7).
+        senses: what the observation is taken from; reward and success are judged by what is true. Perfect when None.
     """
 
     metadata: dict[str, Any] = {'render_modes': []}  # noqa: RUF012 - as Gymnasium declares it
 
-    def __init__(self, plant: Plant, task: Task = BALANCE, human_only: bool = False):
+    def __init__(self, plant: Plant, task: Task = BALANCE, human_only: bool = False,
+                 senses: Senses | None = None):
         self.plant = plant
         self.task = task
         self._scale = 0.0 * task.scale if human_only else task.scale
+        self._senses = senses
         self._model = RobotModel(plant.spec)
         self._steps = round(task.episode_seconds / POLICY_PERIOD)
         self._step = 0
@@ -46,9 +59,12 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """Start an episode; a seed begins the sequence of ball starts anew."""
         super().reset(seed=seed)
         self._step = 0
-        state = self.task.describe(self.plant.reset(seed), self._model)
+        plant_state = self.plant.reset(seed)
+        state = self.task.describe(plant_state, self._model)
         self._observer.reset()
-        return self._observer.observe(state, 0.0), {'state': state}
+        if self._senses is not None:
+            self._senses.reset(seed)
+        return self._observer.observe(self._seen(plant_state, state), 0.0), {'state': state}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Apply ``action`` for 20 ms.
@@ -67,8 +83,13 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
             'agent': plant_state.agent.copy(), 'human': plant_state.human.copy(), 'applied': plant_state.applied.copy(),
             'reward_terms': terms, 'state': state, 'on_tray': self.task.on_tray(state), 'failed': failed}
         reward = sum(terms.values()) * self.task.reward_scale
-        observation = self._observer.observe(state, POLICY_PERIOD)
+        observation = self._observer.observe(self._seen(plant_state, state), POLICY_PERIOD)
         return observation, reward, failed, not failed and self._step >= self._steps, info
+
+    def _seen(self, plant_state: PlantState, state: Any) -> Any:
+        """The task's state as it is perceived."""
+        return state if self._senses is None else self.task.describe(
+            self._senses.perceive(plant_state), self._model)
 
     def close(self) -> None:
         """Let go of the plant."""

@@ -47,7 +47,7 @@ class Corrections:
 
 
 def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching: CoachingSettings,
-                     ) -> tuple[Corrections, np.ndarray]:
+                     ) -> Corrections:
     """The corrections of an episode.
 
     People react late, and some later than others: the moment held at t corrects what the policy did at t - d, for
@@ -57,9 +57,6 @@ def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching:
     Args:
         number: of the episode, from 1.
         means: what the policy does in the states of the episode without exploring, (steps, k).
-
-    Returns:
-        The corrections, and the step of the episode that each is for, (rows,).
     """
     steps = len(episode)
     later = [min(round(delay / POLICY_PERIOD), steps) for delay in coaching.delays]
@@ -70,6 +67,5 @@ def find_corrections(episode: Episode, number: int, means: np.ndarray, coaching:
     labels = np.clip(means[:, np.newaxis] + coaching.gain * human / scale, -1.0, 1.0).mean(axis=1)
     weights = (human != 0.0).any(axis=2).mean(axis=1, keepdims=True)
     corrected = np.flatnonzero(weights)
-    found = Corrections(*(torch.as_tensor(values[corrected].astype(np.float32)) for values in (
+    return Corrections(*(torch.as_tensor(values[corrected].astype(np.float32)) for values in (
         np.array(episode.observations), labels, weights, np.full((steps, 1), number))))
-    return found, corrected

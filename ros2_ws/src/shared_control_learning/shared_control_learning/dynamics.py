@@ -12,12 +12,15 @@ from shared_control.tasks.task import Task
 
 from .episode import Episode
 
-ROUNDS = 6
+ROUNDS = 8
 """Rounds of reweighting; the weights have settled by then."""
 TUKEY = 4.685
 """Residuals beyond so many standard deviations count nothing: 95 % efficient with Gaussian ones (Tukey's biweight)."""
 STILL = 0.1
-"""Standard deviations of its rate below which a quantity is taken to be held (see :func:`fit_dynamics`)."""
+"""Part of its highest rates below which a quantity is taken to be held (see :func:`fit_dynamics`)."""
+HIGHEST = 0.98
+"""Quantile of the rates that is taken for the highest: with a ball that lies at a wall most of the time, the mean or
+the standard deviation would be that of its trembling."""
 RIDGE = 1e-3
 """Towards 'nothing changes' and 'no reward'."""
 SHARPNESS = 8.0
@@ -61,6 +64,18 @@ class Transitions:
         if name in self.__dict__.get('_rows', {}):
             return self._rows[name]
         raise AttributeError(name)
+
+    @property
+    def moving(self) -> np.ndarray:
+        """How freely what the task wants to be nothing (its position errors) was changing, 0..1; (rows,).
+
+        What a wall holds counts nothing: it moves as no ball on the plate does. All count alike when nothing moved.
+        """
+        rates = self.states[:, [self.size + error for error in self._task.errors]].astype(float)
+        if not rates.any():
+            return np.ones(len(rates))
+        still = (STILL * np.quantile(np.abs(rates), HIGHEST, axis=0)) ** 2 + 1e-12
+        return (rates ** 2 / (rates ** 2 + still)).prod(axis=1)
 
     def tensors(self) -> dict[str, torch.Tensor]:
         """By name, for a policy file."""
@@ -115,8 +130,10 @@ def fit_dynamics(known: Transitions, periods: int) -> Dynamics:
     """The model of ``known`` transitions, a step of it as long as so many policy ``periods``.
 
     Least squares for each entry of the observation. A ball that a wall holds, or that bounces off it, moves as no ball
-    on the plate does, and would bend the model: a transition counts for an entry by how much that entry was changing
-    before, so that what is held counts nothing, and Tukey's biweight leaves out what fits badly.
+    on the plate does, and would bend the model, up to a wrong sign when somebody keeps it there most of the time. So a
+    transition counts by how much the position errors were changing before (the entry itself, for a task that names
+    none), so that what is held counts nothing; and Tukey's biweight, which begins at "nothing changes", leaves out
+    what fits badly.
     """
     n = known.size
     states, moments = known.states.astype(float), known.moments.astype(float)
@@ -125,7 +142,7 @@ def fit_dynamics(known: Transitions, periods: int) -> Dynamics:
     width = states.shape[1]
     a, b, c = np.eye(width), np.zeros((width, moments.shape[1])), np.zeros(width)
     for entry in range(n):
-        solution = _robust(inputs, changes[:, entry], states[:, n + entry])
+        solution = _robust(inputs, changes[:, entry], known.moving)
         a[entry] += solution[:width]
         a[n + entry] = solution[:width]
         b[entry] = b[n + entry] = solution[width:-1]
@@ -139,18 +156,16 @@ def fit_dynamics(known: Transitions, periods: int) -> Dynamics:
         np.concatenate([held_a, held_b], axis=1).T, held_c, curvature, slope)))
 
 
-def _robust(inputs: np.ndarray, wanted: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """Weighted ridge regression, reweighted by its own residuals."""
-    still = (STILL * rate.std()) ** 2 + 1e-12
-    moving = rate ** 2 / (rate ** 2 + still)
-    weights = moving
+def _robust(inputs: np.ndarray, wanted: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """Weighted ridge regression, reweighted by its own residuals; the first are those of "nothing changes"."""
+    solution = np.zeros(inputs.shape[1])
     for _ in range(ROUNDS):
-        weighted = inputs * weights[:, np.newaxis]
-        solution = np.linalg.solve(weighted.T @ inputs + RIDGE * np.eye(inputs.shape[1]), weighted.T @ wanted)
         residuals = np.abs(wanted - inputs @ solution)
         of_moving = residuals[moving > 0.5]
         deviation = 1.4826 * float(np.median(of_moving)) if len(of_moving) else float(residuals.std())
         weights = moving * np.clip(1.0 - (residuals / (TUKEY * deviation + 1e-6)) ** 2, 0.0, 1.0) ** 2
+        weighted = inputs * weights[:, np.newaxis]
+        solution = np.linalg.solve(weighted.T @ inputs + RIDGE * np.eye(inputs.shape[1]), weighted.T @ wanted)
     return solution
 
 

@@ -114,7 +114,7 @@ class PpoLearner:
         number = self.episode + 1
         with torch.no_grad():
             means = self.means(torch.as_tensor(np.array(episode.observations))).clamp(-1.0, 1.0).numpy()
-        found, _ = find_corrections(episode, number, means, coaching)
+        found = find_corrections(episode, number, means, coaching)
         known = self.corrections = self.corrections.since(number - coaching.memory_episodes + 1).followed_by(found)
         weight = coaching.weight_in(number)
         if weight == 0.0 or not len(known):

@@ -55,7 +55,7 @@ class GuidedPreset(Preset):
 
 
 GUIDED = GuidedPreset('guided', replace(BALANCE, integrates=True), GuidedSettings(
-    PpoSettings(initial_std=0.3, std_decay=0.93, learning_rate=1e-2, learning_rate_decay=0.93), CoachingSettings()))
+    PpoSettings(initial_std=0.3, std_decay=0.93, learning_rate=1e-2, learning_rate_decay=0.93)))
 """Learns from every moment what it did, whoever gave it."""
 COACHED = PpoPreset('coached', BALANCE, PpoLearnerSettings(
     PpoSettings(initial_std=0.4, std_decay=0.93, learning_rate=3e-2, learning_rate_decay=0.93), CoachingSettings()))

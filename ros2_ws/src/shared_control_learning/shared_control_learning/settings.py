@@ -110,14 +110,10 @@ class ModelSettings:
     integral is good for."""
     restlessness: NotNegative = 0.5
     """Cost of the squared change of the action from one imagined step to the next, in rewards."""
-    advice: NotNegative = 0.1
-    """Weight of the person's corrections beside the model's objective."""
-    foresight: Annotated[int, Field(ge=1, le=1000)] = 20
-    """Imagined steps over which a correction is judged."""
 
 
 @dataclass(frozen=True)
 class GuidedSettings(PpoLearnerSettings):
-    """PPO, a model of the transitions, and corrections that are judged by it."""
+    """PPO, and a model of the transitions in which the policy is improved."""
 
     model: ModelSettings = ModelSettings()

@@ -99,17 +99,16 @@ def test_its_integral_does_away_with_a_push_that_it_never_met():
     assert np.abs(pushed.position_error[-100:]).mean() < 0.2
 
 
-def test_corrections_that_were_not_worth_it_are_not_believed():
-    def believed(human):
-        learner = GUIDED.make(3)
-        for number in range(2):
-            learner.begin()
-            learner.learn_from(rolling(learner.task, learner.explore, seed=number))
-        learner.begin()
-        figures = learner.learn_from(rolling(learner.task, lambda seen: 0.1 * learner.act(seen), seed=5, human=human))
-        return figures['train/corrections'] / figures['train/corrections_offered']
-
-    assert believed(lambda number, error: -10.0 * np.sign(error[0])) < 0.1
+def test_a_ball_that_an_adversary_keeps_at_the_wall_does_not_turn_the_model_round():
+    random = np.random.default_rng(1)
+    known = Transitions(BALANCE, 20)
+    episode = rolling(BALANCE, lambda _: random.normal(size=1) * 0.3, seed=2,
+                      human=lambda number, error: -14.0 * np.sign(error[0]))
+    assert np.mean([abs(error) >= WALL for error in episode.position_error]) > 0.8
+    known.add(episode, 1)
+    model = fit_dynamics(known, periods=1)
+    assert float(model.ab[2, 1]) == pytest.approx(GAIN * 0.85, rel=0.2)
+    assert known.moving[np.array(episode.position_error) >= WALL].mean() < 0.1
 
 
 def test_it_goes_on_as_if_it_had_never_stopped(tmp_path):

@@ -8,8 +8,11 @@ from shared_control.tasks.balance import BALANCE
 from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.evaluation.perturbation import FORCE, PUSHES, run_perturbation
 from shared_control_learning.evaluation.randomized import run_randomized
-from shared_control_learning.evaluation.result import TRACKS
+from shared_control_learning.evaluation.result import TRACKS, TRANSFER
+from shared_control_learning.evaluation.run import count_episodes
 from shared_control_learning.evaluation.trajectory import run_trajectory
+from shared_control_learning.evaluation.transfer import run_transfer
+from shared_control_sim.changes import AS_TAUGHT, CHANGES, change_named
 from shared_control_sim.local_plant import LocalPlant
 
 
@@ -73,3 +76,15 @@ def test_trajectory_moves_the_tray_as_a_cosine(good_robot):
     reference = cosine_velocity(result.seconds, frequency)
     assert np.std((tray - reference)[late]) < 0.1 * np.std(reference[late])
     assert not result.fallen[0]
+
+
+def test_the_test_on_other_arms_has_a_row_for_each_change(good_robot):
+    changes = [AS_TAUGHT, change_named('tray askew by +2 deg'), change_named('seen with noise')]
+    results = run_transfer(good_robot, episodes=2, changes=changes)
+    assert [result.test for result in results] == [TRANSFER + change.name for change in changes]
+    plain = run_randomized(good_robot, episodes=2)
+    np.testing.assert_array_equal(results[0].position_error, plain.position_error)
+    errors = [np.abs(result.position_error[:, -150:]).mean() for result in results]
+    assert errors[1] > errors[0] + 0.02  # a law without an integral has nothing against a tray that sits askew
+    assert results[2].success.all() and errors[2] != errors[0]
+    assert count_episodes('transfer', 2) == 2 * len(CHANGES)

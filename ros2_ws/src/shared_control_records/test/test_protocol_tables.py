@@ -17,6 +17,7 @@ from shared_control_records.evaluation.command import add_command
 from shared_control_records.evaluation.figures import plots
 from shared_control_records.evaluation.policies import load_policies
 from shared_control_records.evaluation.tables import as_json, text_table, write_csv
+from shared_control_records.evaluation.transfer import transfer_plot, transfer_table
 
 STEPS = 500
 
@@ -99,6 +100,32 @@ def test_the_mean_of_two_has_no_band_that_looks_certain():
     plot.draw(figure)
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ['mean over 2 policies', 'push']
     assert 'standard error' not in plot.caption
+
+
+def transferred(*errors):
+    """A policy on two arms: as taught with the first errors, and with the second ones."""
+    return [constant(*those, test=f'transfer: {name}')
+            for those, name in zip(errors, ('as taught', 'odd'), strict=True)]
+
+
+def test_the_test_on_other_arms_is_a_line_a_change():
+    results = {'a': transferred((0.01, 0.01), (0.01, 0.05)), 'b': transferred((0.004, 0.004), (0.07, 0.05))}
+    _, _, taught, odd = (line.split() for line in transfer_table(results).splitlines())
+    assert taught == ['as', 'taught', '2/2', '100%', '100%', '7.0', '10.0']
+    assert odd == ['odd', '0/2', '25%', '0%', '45.0', '60.0']
+    assert transfer_table({'a': results['a']}).splitlines()[-1].split() == ['odd', '50%', '30.0']
+
+
+def test_the_test_on_other_arms_is_drawn_and_written(tmp_path):
+    results = {'a': transferred((0.01, 0.01), (0.01, 0.05))}
+    figure = Figure(layout='constrained')
+    transfer_plot(results).draw(figure)
+    bars, dots = figure.axes
+    assert [label.get_text() for label in bars.get_yticklabels()] == ['as taught', 'odd']
+    assert [bar.get_width() for bar in bars.patches] == [100.0, 50.0]
+    assert [line.get_xdata()[0] for line in dots.lines] == pytest.approx([10.0, 30.0])
+    write_csv(results, tmp_path)
+    assert (tmp_path / 'transfer_as_taught_tracks.csv').exists()
 
 
 @pytest.fixture

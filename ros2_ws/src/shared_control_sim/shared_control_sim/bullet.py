@@ -144,8 +144,10 @@ class BulletWorld:
         self._advance()
 
     def _release_brakes(self) -> None:
+        # A motor that holds with little force beside the torques is what the engine has for Coulomb friction.
         pybullet.setJointMotorControlArray(
-            self.arm, self._joints, pybullet.VELOCITY_CONTROL, forces=[0.0] * self._dof, physicsClientId=self.client)
+            self.arm, self._joints, pybullet.VELOCITY_CONTROL, forces=[self.spec.joint_friction] * self._dof,
+            physicsClientId=self.client)
         self._brakes = False
 
     def _advance(self) -> None:

@@ -37,18 +37,21 @@ class LocalPlant:
         physics: its name (entry point of the group ``shared_control.worlds``).
         robot: the robot; the Panda when not given.
         sharing: what counts of the two moments.
+        world: another than that of the task and the robot.
+        model: what the controller takes the robot for; the robot as it is when not given.
 
     Raises:
         ValueError: the task cannot be shared like this.
     """
 
     def __init__(self, task: Task = BALANCE, person: Person | None = None, physics: str = 'bullet',
-                 robot: RobotSpec | None = None, sharing: Sharing = ADDITIVE):
+                 robot: RobotSpec | None = None, sharing: Sharing = ADDITIVE,
+                 world: World | None = None, model: RobotModel | None = None):
         sharing.check(len(task.axes))
         self._sharing = sharing
         self.spec = carrying(panda() if robot is None else robot, task.scene)
-        self.world: World = load(WORLDS, physics)(task.scene, CONTROL_PERIOD, self.spec)
-        self.controller = ComputedTorqueController(RobotModel(self.spec), task.axes, dt=CONTROL_PERIOD)
+        self.world: World = world or load(WORLDS, physics)(task.scene, CONTROL_PERIOD, self.spec)
+        self.controller = ComputedTorqueController(model or RobotModel(self.spec), task.axes, dt=CONTROL_PERIOD)
         self._person = person
         self._limit = task.limit
         self._none = np.zeros(len(task.axes))

@@ -47,6 +47,7 @@ class MujocoWorld:
         self._place, self._quaternion = self.data.qpos[n:n + 3], self.data.qpos[n + 3:]
         self._velocity, self._own_spin = self.data.qvel[n:n + 3], self.data.qvel[n + 3:]
         self._applied, self._friction = self.data.qfrc_applied[:n], self.model.dof_frictionloss[:n]
+        self._friction[:] = spec.joint_friction
         self._tool = self.model.body(spec.tool_frame).id
         self._q[:] = spec.home
         mujoco.mj_forward(self.model, self.data)
@@ -101,7 +102,7 @@ class MujocoWorld:
         self._advance()
 
     def _release_brakes(self) -> None:
-        self._friction[:] = 0.0
+        self._friction[:] = self.spec.joint_friction
         self._brakes = False
 
     def _advance(self) -> None:

@@ -16,7 +16,8 @@ from shared_control.teaching.tutors import make_tutor, tutor_named
 from shared_control_sim.local_plant import LocalPlant
 
 DRAWN = [name for name in FAMILIES if isinstance(tutor_named(name), Individual)]
-WATCHING = [name for name in FAMILIES if FAMILIES[name].use is not Use.CONTROL]
+ADVERSARIES = ['contrary', 'opposed']
+HELPING = [name for name in FAMILIES if FAMILIES[name].use is not Use.CONTROL and name not in ADVERSARIES]
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def test_nobody_presses_faster_than_a_hand(name):
     assert np.diff(times).min() >= 1.0 / who.key_rate - 1e-6
 
 
-@pytest.mark.parametrize('name', [name for name in WATCHING if name in DRAWN])
+@pytest.mark.parametrize('name', [name for name in HELPING if name in DRAWN])
 def test_who_watches_presses_towards_the_goal_after_a_delay(name):
     for error, key in ((0.12, Key.LEFT), (-0.12, Key.RIGHT)):
         who = careful(name, dead_band=0.01)
@@ -92,8 +93,9 @@ def test_who_watches_presses_towards_the_goal_after_a_delay(name):
         assert time >= 1.0 + 0.9 * who.delay
 
 
-def test_an_adversary_presses_the_other_way():
-    assert presses(at_the_keys(careful('contrary'), 1), lambda t: [0.12])[0][1] is Key.RIGHT
+@pytest.mark.parametrize('name', ADVERSARIES)
+def test_an_adversary_presses_the_other_way(name):
+    assert presses(at_the_keys(careful(name, dead_band=0.01), 1), lambda t: [0.12])[0][1] is Key.RIGHT
 
 
 def test_who_is_blind_does_the_same_whatever_there_is_to_see():

@@ -20,14 +20,15 @@ class RobotModel:
 
     Args:
         spec: the robot; the Panda when not given.
+        description: a URDF of it with other inertias; its own when not given.
 
     Raises:
         ValueError: the joints of its URDF are others, or in another order, or do not have one position each.
     """
 
-    def __init__(self, spec: RobotSpec | None = None):
+    def __init__(self, spec: RobotSpec | None = None, description: str | None = None):
         self.spec = spec = panda() if spec is None else spec
-        self.pin_model = pin.buildModelFromXML(spec.description)
+        self.pin_model = pin.buildModelFromXML(description or spec.description)
         names = tuple(self.pin_model.names[1:])
         if names != spec.joints:
             raise ValueError(f'{spec.urdf} has the joints {names}; expected {spec.joints}')

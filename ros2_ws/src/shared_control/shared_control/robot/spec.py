@@ -49,6 +49,8 @@ class RobotSpec:
     """Reference joint positions, rad"""
     gains: dict[str, Gains]
     """By name; ``task`` is what tasks are taught with."""
+    joint_friction: float = 0.0
+    """Coulomb friction of each joint in a simulated world, N m."""
     tool_link: str | None = None
     """URDF of the link that stands in for the one at ``tool_frame`` (:mod:`shared_control.robot.tray`); None: as is."""
     _torque_min: np.ndarray = field(init=False, repr=False)

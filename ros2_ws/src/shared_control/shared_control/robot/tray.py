@@ -2,9 +2,10 @@
 
 from dataclasses import replace
 from functools import cache
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement, fromstring, indent, tostring
 
 import numpy as np
+import pinocchio as pin
 
 from ..scene import Box, Scene
 from .spec import RobotSpec
@@ -22,6 +23,20 @@ def carrying(spec: RobotSpec, scene: Scene) -> RobotSpec:
         return spec
     link = tray_link(scene, spec.tool_frame)
     return spec if link == spec.tool_link else replace(spec, tool_link=link)
+
+
+def askew(spec: RobotSpec, angle: float) -> str:
+    """The URDF of the robot's tool as it is when mounted askew: turned by ``angle``, rad, about its own y axis."""
+    robot = fromstring(spec.description)
+    link = next(link for link in robot.findall('link') if link.get('name') == spec.tool_frame)
+    turn = pin.rpy.rpyToMatrix(0.0, angle, 0.0)
+    for part in link:
+        origin = part.find('origin')
+        if origin is None:
+            origin = SubElement(part, 'origin')
+        origin.set('xyz', _numbers(turn @ _vector(origin, 'xyz')))
+        origin.set('rpy', _numbers(pin.rpy.matrixToRpy(turn @ pin.rpy.rpyToMatrix(_vector(origin, 'rpy')))))
+    return tostring(link, encoding='unicode')
 
 
 @cache
@@ -77,3 +92,7 @@ def _about(box: Box, mass: float, point: np.ndarray) -> np.ndarray:
 
 def _numbers(values: tuple[float, ...] | np.ndarray) -> str:
     return ' '.join(f'{float(value):.9g}' for value in values)
+
+
+def _vector(element: Element, key: str) -> np.ndarray:
+    return np.array(element.get(key, '0 0 0').split(), float)

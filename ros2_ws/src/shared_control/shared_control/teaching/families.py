@@ -78,6 +78,8 @@ FAMILIES: dict[str, Family] = {family.name: family for family in (
     Family('bang_bang', Use.TUNING, 'pushes all the way one way, then the other; looks little ahead',
            'Young and Meiry, IEEE Trans. Automatic Control, 1965',
            _people('bang_bang', 'bang_bang', stiffness=(0.0, 0.0), lead=(0.2, 0.7))),
+    Family('opposed', Use.TUNING, 'does the opposite of a bang-bang tutor: an adversary to choose settings on',
+           'control condition', _people('opposed', 'opposed', stiffness=(0.0, 0.0), lead=(0.2, 0.7))),
     Family('reactive', Use.HELD_OUT, 'a spring and a damper on what is seen late, outside a dead band',
            'PD as the simplest operator: McRuer and Jex, IEEE Trans. Human Factors in Electronics, 1967',
            _people('reactive', 'reactive', stiffness=(0.3, 0.9), lead=(0.4, 0.9))),

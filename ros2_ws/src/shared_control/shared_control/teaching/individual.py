@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
-LawName = Literal['reactive', 'crossover', 'intermittent', 'bang_bang', 'surge', 'blind', 'contrary']
+LawName = Literal['reactive', 'crossover', 'intermittent', 'bang_bang', 'surge', 'blind', 'contrary',
+                  'opposed']
 Habit = Literal['hold', 'tap', 'forget']
 
 

@@ -142,8 +142,9 @@ def _law(who: Individual, random: np.random.Generator) -> Law:
         return Crossover(who.stiffness, who.lead, lag=0.15, remnant=0.3, dead_band=who.dead_band, random=random)
     if who.law == 'intermittent':
         return Intermittent(who.stiffness, damping, who.dead_band, who.rhythm)
-    if who.law == 'bang_bang':
-        return BangBang(who.lead, who.dead_band, who.strength)
+    if who.law in ('bang_bang', 'opposed'):
+        bang_bang = BangBang(who.lead, who.dead_band, who.strength)
+        return bang_bang if who.law == 'bang_bang' else Contrary(bang_bang)
     if who.law == 'surge':
         return Surge(who.strength * 4.0, who.rhythm, who.dead_band, who.lead)
     if who.law == 'blind':

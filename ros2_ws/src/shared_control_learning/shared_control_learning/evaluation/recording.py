@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from shared_control.env import SharedControlEnv
+from shared_control.env import Senses, SharedControlEnv
 from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.model import RobotModel
 from shared_control.tasks.task import Task
@@ -15,8 +15,8 @@ from .result import TRACKS, ProtocolResult
 class RecordingEnv(SharedControlEnv):
     """A :class:`SharedControlEnv` on a plant in this process that keeps the tracks of all its episodes."""
 
-    def __init__(self, plant: LocalPlant, task: Task):
-        super().__init__(plant, task)
+    def __init__(self, plant: LocalPlant, task: Task, senses: Senses | None = None):
+        super().__init__(plant, task, senses=senses)
         self._world = plant.world
         self._robot = RobotModel(plant.spec)
         self._episodes: list[list[tuple[float, ...]]] = []

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+TRANSFER = 'transfer: '
+"""How the names of tests on other arms begin."""
 TRACKS = ('position_error', 'velocity', 'velocity_error', 'agent_moment', 'manipulability')
 """The arrays over time that a :class:`ProtocolResult` holds, by name."""
 
@@ -16,7 +18,7 @@ class ProtocolResult:
     """
 
     test: str
-    """``randomized``, ``perturbation``, or ``trajectory 0.25 Hz`` and so on."""
+    """``randomized``, ``perturbation``, or ``trajectory 0.25 Hz``, ``transfer: ball of 0.6 kg`` and so on."""
     seconds: np.ndarray
     """Time in the episode, (steps,), s: the end of each policy period."""
     position_error: np.ndarray

@@ -2,6 +2,7 @@
 
 from shared_control.control.references import FREQUENCIES
 from shared_control.tasks.task import Task
+from shared_control_sim.changes import CHANGES
 
 from ..callbacks import Callbacks
 from .evaluate import TEST_EPISODES, TEST_SEED, Act
@@ -9,24 +10,28 @@ from .perturbation import run_perturbation
 from .randomized import run_randomized
 from .result import ProtocolResult
 from .trajectory import run_trajectory
+from .transfer import run_transfer
 
-PROTOCOLS = ('randomized', 'perturbation', 'trajectory')
+PROTOCOLS = ('randomized', 'perturbation', 'trajectory', 'transfer')
 
 
 def run_protocol(name: str, act: Act, task: Task, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
                  callbacks: Callbacks | None = None, physics: str = 'bullet') -> list[ProtocolResult]:
-    """The results of a protocol: one, or one a frequency.
+    """The results of a protocol: one, or one a frequency, or one a change of the arm.
 
     Args:
         name: one of :data:`PROTOCOLS`.
         act: the policy.
         task: what it was trained for.
-        episodes, seed: of the randomised test; the others have one episode that is always the same.
+        episodes, seed: of the randomised test, and that on other arms; the others have one episode that is always the
+            same.
         callbacks: called for each episode.
         physics: what it is tested in (entry point of the group ``shared_control.worlds``).
     """
     if name == 'randomized':
         return [run_randomized(act, task, episodes, seed, callbacks, physics)]
+    if name == 'transfer':
+        return run_transfer(act, task, episodes, seed, callbacks, physics)
     if name == 'perturbation':
         return [run_perturbation(act, task, callbacks=callbacks, physics=physics)]
     return [run_trajectory(act, frequency, task, callbacks, physics) for frequency in FREQUENCIES]
@@ -34,4 +39,5 @@ def run_protocol(name: str, act: Act, task: Task, episodes: int = TEST_EPISODES,
 
 def count_episodes(name: str, episodes: int = TEST_EPISODES) -> int:
     """How many episodes a protocol has."""
-    return {'randomized': episodes, 'perturbation': 1, 'trajectory': len(FREQUENCIES)}[name]
+    return {'randomized': episodes, 'perturbation': 1, 'trajectory': len(FREQUENCIES),
+            'transfer': len(CHANGES) * episodes}[name]

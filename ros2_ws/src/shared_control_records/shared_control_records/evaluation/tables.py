@@ -1,5 +1,6 @@
 """What the tests found, to read and as files."""
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,11 @@ def as_json(results: Results) -> dict[str, Any]:
     return content
 
 
+def slug(test: str) -> str:
+    """The name of a test as a part of file names."""
+    return re.sub(r'[^a-z0-9.+-]+', '_', test.lower())
+
+
 def write_csv(results: Results, folder: Path) -> None:
     """``episodes.csv``, a row an episode; and for each test its tracks and their mean and SEM over time."""
     episodes = [
@@ -66,14 +72,13 @@ def write_csv(results: Results, folder: Path) -> None:
         for number, figures in enumerate(episode_figures(result), start=1)]
     _write(pd.DataFrame(episodes), folder / 'episodes.csv')
     for test, tests in by_test(results).items():
-        slug = test.replace(' ', '_').lower()
         _write(pd.concat([_tracks(name, result) for name, result in zip(results, tests, strict=True)]),
-               folder / f'{slug}_tracks.csv')
+               folder / f'{slug(test)}_tracks.csv')
         means = {'seconds': tests[0].seconds}
         for track in TRACKS:
             means[f'{track}_mean'], means[f'{track}_sem'] = curve(tests, track)
             means[f'abs_{track}_mean'], means[f'abs_{track}_sem'] = curve(tests, track, absolute=True)
-        _write(pd.DataFrame(means), folder / f'{slug}_mean.csv')
+        _write(pd.DataFrame(means), folder / f'{slug(test)}_mean.csv')
 
 
 def _tracks(name: str, result: ProtocolResult) -> pd.DataFrame:

@@ -4,15 +4,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-from shared_control.control.references import FREQUENCIES
 from shared_control.control.sharing import Sharing
 from shared_control.seeds import episode_seed
 from shared_control_learning.episode_table import TABLE_NAME, read_rows
 from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
-from shared_control_learning.evaluation.perturbation import run_perturbation
-from shared_control_learning.evaluation.randomized import run_randomized
 from shared_control_learning.evaluation.result import ProtocolResult
-from shared_control_learning.evaluation.trajectory import run_trajectory
+from shared_control_learning.evaluation.run import run_protocol
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import preset_for
 from shared_control_learning.training import train
@@ -79,14 +76,9 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
     """What the plan has every policy go through, by name."""
     learner = load_policy(policy)
     task, physics = learner.task, job.condition.tested_in or job.condition.physics
-    results = []
-    if 'randomized' in plan.tests:
-        results.append(run_randomized(
-            learner.act, task, seed=episode_seed(TEST_SEED, job.participant.number), physics=physics))
-    if 'perturbation' in plan.tests:
-        results.append(run_perturbation(learner.act, task, physics=physics))
-    if 'trajectory' in plan.tests:
-        results += [run_trajectory(learner.act, frequency, task, physics=physics) for frequency in FREQUENCIES]
+    seed = episode_seed(TEST_SEED, job.participant.number)
+    results = [result for name in plan.tests
+               for result in run_protocol(name, learner.act, task, seed=seed, physics=physics)]
     return {result.test: result for result in results}
 
 

@@ -10,7 +10,7 @@ from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.presets import preset, preset_for
 from shared_control_learning.wrong_content import shortened
 
-Test = Literal['randomized', 'perturbation', 'trajectory']
+Test = Literal['randomized', 'perturbation', 'trajectory', 'transfer']
 TESTS: tuple[Test, ...] = get_args(Test)
 SIZE_MAX = 2**20
 """Bytes; a plan takes less than a thousand."""

@@ -56,6 +56,7 @@ class Balance(Task):
     reward_names: ClassVar[tuple[str, ...]] = ('R_alpha', 'R_V', 'R_kw', 'R_P', 'R_Pe', 'fall')
     observation_size: ClassVar[int] = 3
     errors: ClassVar[tuple[int, ...]] = (0,)
+    preset: ClassVar[str] = 'guided'
 
     fallen_below: float = 0.836
     """Height under which the ball has fallen, m (appendix)."""

@@ -1,0 +1,45 @@
+"""Other inertias for the links of a URDF: what a controller may wrongly take its robot for."""
+
+from importlib.resources import files
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+import yaml
+
+from .spec import RobotSpec
+
+
+def with_masses_times(spec: RobotSpec, factor: float) -> str:
+    """The robot's URDF with the masses and inertias of all links but the tool ``factor`` times what they are."""
+    robot = ElementTree.fromstring(spec.description)
+    for link in _links(robot, spec):
+        for number in (*link.findall('inertial/mass'), *link.findall('inertial/inertia')):
+            for key, value in number.items():
+                number.set(key, repr(factor * float(value)))
+    return ElementTree.tostring(robot, encoding='unicode')
+
+
+def with_fer_inertials(spec: RobotSpec) -> str:
+    """The Panda's URDF with the inertias that franka_description gives for this arm (``specs/fer_inertials.yaml``).
+
+    Raises:
+        ValueError: the robot is no Panda.
+    """
+    inertials = yaml.safe_load((files(__package__) / 'specs' / 'fer_inertials.yaml').read_text())
+    robot = ElementTree.fromstring(spec.description)
+    links = {link.get('name'): link for link in _links(robot, spec)}
+    for name, numbers in inertials.items():
+        link = links.get(f'panda_{name}')
+        if link is None:
+            raise ValueError(f'{spec.urdf} has no link panda_{name}: these inertias are those of a Panda')
+        for old in link.findall('inertial'):
+            link.remove(old)
+        inertial = SubElement(link, 'inertial')
+        SubElement(inertial, 'origin', xyz=numbers['xyz'])
+        SubElement(inertial, 'mass', value=repr(numbers['mass']))
+        SubElement(inertial, 'inertia', {f'i{key}': repr(value) for key, value in numbers['inertia'].items()})
+    return ElementTree.tostring(robot, encoding='unicode')
+
+
+def _links(robot: Element, spec: RobotSpec) -> list[Element]:
+    return [link for link in robot.findall('link') if link.get('name') != spec.tool_frame]

@@ -1,0 +1,31 @@
+"""The test on other arms: the randomised test again and again, with one thing otherwise each time."""
+
+from collections.abc import Sequence
+
+from shared_control.tasks.balance import BALANCE
+from shared_control.tasks.task import Task
+from shared_control_sim.changed_plant import ChangedPlant, senses_of
+from shared_control_sim.changes import CHANGES, Change
+
+from ..callbacks import Callbacks
+from .evaluate import TEST_EPISODES, TEST_SEED, Act, as_tested, evaluate
+from .recording import RecordingEnv
+from .result import TRANSFER, ProtocolResult
+
+
+def run_transfer(act: Act, task: Task = BALANCE, episodes: int = TEST_EPISODES, seed: int = TEST_SEED,
+                 callbacks: Callbacks | None = None, physics: str = 'bullet',
+                 changes: Sequence[Change] = CHANGES) -> list[ProtocolResult]:
+    """Test ``act`` alone under each of ``changes``; a result for each, with the same ball starts.
+
+    See :func:`run_randomized` for the other arguments.
+    """
+    results = []
+    for change in changes:
+        env = RecordingEnv(ChangedPlant(task, change, physics=physics), as_tested(task), senses_of(change))
+        try:
+            evaluate(act, env, episodes, seed, callbacks)
+        finally:
+            env.close()
+        results.append(env.result(TRANSFER + change.name))
+    return results
