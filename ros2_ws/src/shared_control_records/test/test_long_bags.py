@@ -39,7 +39,7 @@ def assert_same(one, other, name='bag'):
         assert one == other, name
 
 
-@pytest.mark.parametrize('way', ['message by message', 'without the index'])
+@pytest.mark.parametrize('way', ['message by message', 'chunk by chunk', 'without the index'])
 def test_chunks_give_what_single_messages_give(minute, monkeypatch, way):
     by_chunks = read_bag(minute.bag)
     used = []
@@ -48,11 +48,30 @@ def test_chunks_give_what_single_messages_give(minute, monkeypatch, way):
             used.append(way)
             raise chunks.OutOfOrder
         monkeypatch.setattr(reader, 'read_blocks', blocks)
+    elif way == 'chunk by chunk':
+        groups = chunks._groups
+        monkeypatch.setattr(chunks, 'WORTHWHILE', 0)
+        monkeypatch.setattr(chunks, '_groups', lambda found: used.extend(groups(found)) or iter(used))
     else:
         monkeypatch.setattr(chunks, '_indexed', lambda *_: used.append(way))
     assert_same(by_chunks, read_bag(minute.bag))
-    assert used
+    assert used and (way != 'chunk by chunk' or len(used) > 200)
     assert by_chunks.counts['/joint_states'] == 60_000
+
+
+def test_chunks_that_overlap_in_time_are_taken_together():
+    """An out-of-order spot costs no more than the rest; where too many overlap, messages are added one by one."""
+    def chunk(first, last, size=chunks.WORTHWHILE):
+        return chunks.ChunkInfo(first, last, 1000 * first, 0, {}, 0, '', 0, size, {})
+
+    apart = [chunk(0, 10), chunk(10, 20), chunk(20, 30)]
+    assert list(chunks._groups(reversed(apart))) == [[one] for one in apart]
+    overlapping = [chunk(0, 10), chunk(8, 20), chunk(19, 30), chunk(30, 40)]
+    assert list(chunks._groups(overlapping)) == [overlapping[:3], overlapping[3:]]
+    small = [chunk(first, first + 1, chunks.WORTHWHILE // 4) for first in range(6)]
+    assert list(map(len, chunks._groups(small))) == [4, 2]
+    endless = [chunk(first, 10_000, chunks.AT_MOST // 4) for first in range(9)]
+    assert list(map(len, chunks._groups(endless))) == [4, 4, 1]
 
 
 def test_an_index_that_leaves_a_message_out_is_not_believed(minute):
@@ -61,18 +80,18 @@ def test_an_index_that_leaves_a_message_out_is_not_believed(minute):
     storage.open()
     content, index = chunks._read(storage.bio, storage.chunks[0])
     storage.close()
-    found = chunks._indexed(content, index)
+    found = chunks._indexed(content, [index], [0])
     assert found is not None and len(found.offsets) == len(chunks._walked(content).offsets) > 100
     _, length, *_ = chunks._INDEX_HEAD.unpack_from(index)
     without_a_topic = index[chunks._RECORD.size + length:]
-    assert chunks._indexed(content, without_a_topic) is None
+    assert chunks._indexed(content, [without_a_topic], [0]) is None
     entry = chunks._INDEX_HEAD.size
     one_time_wrong = bytearray(index)
     one_time_wrong[entry] ^= 1
-    assert chunks._indexed(content, bytes(one_time_wrong)) is None
+    assert chunks._indexed(content, [bytes(one_time_wrong)], [0]) is None
     one_place_wrong = bytearray(index)
     one_place_wrong[entry + 8] ^= 1
-    assert chunks._indexed(content, bytes(one_place_wrong)) is None
+    assert chunks._indexed(content, [bytes(one_place_wrong)], [0]) is None
 
 
 def test_each_minute_takes_little_memory(minute, minutes):

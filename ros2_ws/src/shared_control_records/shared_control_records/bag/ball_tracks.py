@@ -1,6 +1,7 @@
 """How the ball moved in each episode, from a bag."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from shared_control import contract
@@ -50,7 +51,7 @@ def episode_tracks(bag: Bag) -> list[EpisodeTrack]:
     One that was broken off, and began again, is left out.
     """
     starts, ends = bag.training[contract.EPISODE], bag.training[contract.EPISODE_RETURN]
-    model = RobotModel()
+    model = _Pose()
     tracks: list[EpisodeTrack] = []
     ended_ns: list[int] = []
     for index, (start_ns, number) in enumerate(zip(starts.received_ns, starts.values, strict=True)):
@@ -100,6 +101,26 @@ def _thinned(stamps_ns: np.ndarray) -> np.ndarray:
     """Indices of the samples that a learner may have seen: the first of each period of the policy, and the last."""
     return np.unique(np.append(
         np.flatnonzero(np.diff((stamps_ns - stamps_ns[0]) // _PERIOD_NS, prepend=-1)), len(stamps_ns) - 1))
+
+
+class _Pose(RobotModel):
+    """The model that tracks are taken from: poses alone, each once.
+
+    A task describes the Jacobian's manipulability with every state, which tracks have no use for.
+    """
+
+    _NO_JACOBIAN = np.zeros((1, 1))
+    _last: tuple[np.ndarray | None, Any] = (None, None)
+
+    def tray_pose(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See :class:`RobotModel`."""
+        if self._last[0] is not q:
+            self._last = q, super().tray_pose(q)
+        return self._last[1]
+
+    def jacobian(self, q: np.ndarray) -> np.ndarray:
+        """See :class:`RobotModel`; not computed."""
+        return self._NO_JACOBIAN
 
 
 def _seen(bag: Bag, samples: np.ndarray, model: RobotModel) -> tuple[np.ndarray, np.ndarray, bool]:

@@ -1,11 +1,14 @@
-"""The messages of an MCAP file, a chunk and in it a topic at a time, without touching each message by itself.
+"""The messages of an MCAP file, some chunks and in them a topic at a time, without touching each message by itself.
 
 Behind each chunk stands an index of its messages. One that does not account for every byte of the chunk is not
-believed: then the chunk is walked through.
+believed: then the chunk is walked through. A recorder writes a chunk every quarter of a second: they are joined until
+they are worth the while, and as long as they overlap in time, and the next ones are decompressed meanwhile.
 """
 
 import struct
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from itertools import pairwise
 from typing import BinaryIO, NamedTuple
 
@@ -25,6 +28,10 @@ _INDEX_HEAD = struct.Struct('<BQHI')
 """Kind, bytes that follow, channel, bytes of the entries."""
 _CHUNK_HEAD = struct.Struct('<BQQQQII')
 """Kind, bytes that follow, first and last time, bytes uncompressed, checksum, letters of the compression's name."""
+WORTHWHILE = 1_500_000
+"""Bytes of chunks, uncompressed, that are taken together."""
+AT_MOST = 64_000_000
+"""Likewise, of chunks that overlap: beyond, messages are added one by one."""
 _ENTRY = np.dtype([('received_ns', '<u8'), ('offset', '<u8')])
 
 
@@ -58,33 +65,66 @@ class OutOfOrder(Exception):
 
 
 def read_blocks(storage: McapReader) -> Iterator[list[Block]]:
-    """The blocks of each chunk of an open file, one a topic at the most.
+    """The blocks of each group of chunks of an open file, one a topic at the most.
 
     Raises:
-        OutOfOrder: those of a topic were received before some of an earlier chunk.
+        OutOfOrder: those of a topic were received before some of an earlier group.
         ReaderError: the file is damaged.
     """
     assert storage.bio
     connections = {connection.id: connection for connection in storage.connections}
     newest_ns: dict[int, int] = {}
-    for chunk in sorted(storage.chunks, key=lambda chunk: (chunk.message_start_time, chunk.chunk_start_offset)):
-        content, index = _read(storage.bio, chunk)
-        found = _indexed(content, index) or _walked(content)
-        order = np.lexsort((found.received_ns, found.channels))
-        channels, received_ns, offsets, lengths = (column[order] for column in found)
-        received_ns = received_ns.astype(np.int64)
-        bounds = [*np.flatnonzero(np.diff(channels, prepend=-1)), len(order)]
-        blocks = []
-        for first, last in pairwise(bounds):
-            channel = int(channels[first])
-            if channel not in connections:
-                continue
-            if received_ns[first] < newest_ns.get(channel, 0):
-                raise OutOfOrder
-            newest_ns[channel] = int(received_ns[last - 1])
-            blocks.append(Block(connections[channel], received_ns[first:last], content,
-                                offsets[first:last] + _MESSAGE_HEAD.size, lengths[first:last] - _LEAST))
-        yield blocks
+    with closing(_ahead(storage.bio, list(_groups(storage.chunks)))) as joined:  # closed: its thread reads the file
+        for content, found in joined:
+            order = np.lexsort((found.received_ns, found.channels))
+            channels, received_ns, offsets, lengths = (column[order] for column in found)
+            received_ns = received_ns.astype(np.int64)
+            bounds = [*np.flatnonzero(np.diff(channels, prepend=-1)), len(order)]
+            blocks = []
+            for first, last in pairwise(bounds):
+                channel = int(channels[first])
+                if channel not in connections:
+                    continue
+                if received_ns[first] < newest_ns.get(channel, 0):
+                    raise OutOfOrder
+                newest_ns[channel] = int(received_ns[last - 1])
+                blocks.append(Block(connections[channel], received_ns[first:last], content,
+                                    offsets[first:last] + _MESSAGE_HEAD.size, lengths[first:last] - _LEAST))
+            yield blocks
+
+
+def _groups(chunks: Sequence[ChunkInfo]) -> Iterator[list[ChunkInfo]]:
+    """Chunks by time, in groups that do not overlap each other."""
+    group: list[ChunkInfo] = []
+    size, end = 0, 0
+    for chunk in sorted(chunks, key=lambda chunk: (chunk.message_start_time, chunk.chunk_start_offset)):
+        if group and (size >= AT_MOST or (size >= WORTHWHILE and chunk.message_start_time >= end)):
+            yield group
+            group, size = [], 0
+        group.append(chunk)
+        size, end = size + chunk.uncompressed_size, max(end, chunk.message_end_time)
+    if group:
+        yield group
+
+
+def _ahead(file: BinaryIO, groups: Sequence[list[ChunkInfo]]) -> Generator[tuple[bytes, _Found], None, None]:
+    """What groups hold, each read in another thread while the one before it is used."""
+    with ThreadPoolExecutor(1) as reader:
+        following = reader.submit(_joined, file, groups[0]) if groups else None
+        for group in [*groups[1:], None]:
+            if following is None:
+                return
+            current = following.result()
+            following = reader.submit(_joined, file, group) if group else None
+            yield current
+
+
+def _joined(file: BinaryIO, group: Sequence[ChunkInfo]) -> tuple[bytes, _Found]:
+    """The records of some chunks, one behind the other, and the messages in them."""
+    contents, entries = zip(*(_read(file, chunk) for chunk in group), strict=True)
+    content = contents[0] if len(group) == 1 else b''.join(contents)
+    starts = np.cumsum([0, *map(len, contents[:-1])])
+    return content, _indexed(content, entries, starts.tolist()) or _walked(content)
 
 
 def _read(file: BinaryIO, chunk: ChunkInfo) -> tuple[bytes, bytes]:
@@ -99,23 +139,33 @@ def _read(file: BinaryIO, chunk: ChunkInfo) -> tuple[bytes, bytes]:
             raw[chunk.chunk_length:])
 
 
-def _indexed(content: bytes, index: bytes) -> _Found | None:
-    """What the index says of a chunk; None when it is not true of every byte."""
-    channels, parts, at = [], [], 0
-    while at + _INDEX_HEAD.size <= len(index):
-        kind, length, channel, size = _INDEX_HEAD.unpack_from(index, at)
-        if kind != _MESSAGE_INDEX or at + _RECORD.size + length > len(index) or length != size + 6 or size % 16:
-            return None
-        parts.append(np.frombuffer(index, _ENTRY, size // 16, at + _INDEX_HEAD.size))
-        channels.append(channel)
-        at += _RECORD.size + length
+def _indexed(content: bytes, indices: Sequence[bytes], starts: Sequence[int]) -> _Found | None:
+    """What the indices say of some chunks that are joined; None when it is not true of every byte.
+
+    Args:
+        starts: where in ``content`` the chunk of each index begins.
+    """
+    channels, parts, begins = [], [], []
+    for index, start in zip(indices, starts, strict=True):
+        at = 0
+        while at + _INDEX_HEAD.size <= len(index):
+            kind, length, channel, size = _INDEX_HEAD.unpack_from(index, at)
+            if kind != _MESSAGE_INDEX or at + _RECORD.size + length > len(index) or length != size + 6 or size % 16:
+                return None
+            parts.append(np.frombuffer(index, _ENTRY, size // 16, at + _INDEX_HEAD.size))
+            channels.append(channel)
+            begins.append(start)
+            at += _RECORD.size + length
     if not parts:
         return None
-    entries = np.concatenate(parts)
+    entries, counts = np.concatenate(parts), list(map(len, parts))
     offsets = entries['offset'].astype(np.int64)
+    if (offsets < 0).any():
+        return None
+    offsets += np.repeat(np.array(begins, np.int64), counts)
     if (offsets < 0).any() or (offsets + _MESSAGE_HEAD.size > len(content)).any():
         return None
-    found = _Found(np.repeat(channels, list(map(len, parts))), entries['received_ns'], offsets,
+    found = _Found(np.repeat(channels, counts), entries['received_ns'], offsets,
                    _numbers(content, '<u8', offsets + 1).astype(np.int64))
     agrees = ((_numbers(content, 'u1', offsets) == _MESSAGE)
               & (_numbers(content, '<u2', offsets + 9) == found.channels)

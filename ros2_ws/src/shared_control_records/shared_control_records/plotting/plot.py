@@ -10,14 +10,14 @@ from typing import Any
 
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from shared_control.files import write_atomically
 
 from .style import FAINT, PAPER
 
-KINDS = ('png', 'svg', 'pdf')
-"""Formats of every figure that is written."""
 FOOTER = 0.2
 """Height of the line below a figure, inches."""
 DPI = 200
@@ -64,9 +64,11 @@ class Sheet:
             'svg': {'Title': stem.name, 'Description': caption, 'Date': None},
             'pdf': {'Title': stem.name, 'Subject': caption, 'CreationDate': None}}
         with matplotlib.rc_context({'svg.hashsalt': 'shared-control'}):  # the same figure is the same file
-            for kind in KINDS:
+            self.figure.dpi = dpi
+            for canvas, kind in ((FigureCanvasAgg, 'png'), (FigureCanvasSVG, 'svg'), (FigureCanvasPdf, 'pdf')):
                 image = io.BytesIO()
-                self.figure.savefig(image, format=kind, dpi=dpi, metadata=about[kind])
+                # Not by savefig, which draws everything twice.
+                getattr(canvas(self.figure), f'print_{kind}')(image, metadata=about[kind])
                 self.figure.set_layout_engine('none')  # laid out by now; again would take as long as the rest
                 write_atomically(stem.with_name(f'{stem.name}.{kind}'), image.getvalue())
 
