@@ -148,3 +148,14 @@ def test_package_xml_is_as_the_build_tools_want_it(package):
     warnings = []
     parse_package(package, warnings=warnings).validate(warnings=warnings)
     assert not warnings
+
+
+def test_the_wheel_is_whole(tmp_path):
+    """Every console script and the README's Python run from it; `make wheel` also resolves what it needs."""
+    done = subprocess.run([sys.executable, ROOT / 'tools' / 'wheel.py', '--quick', '--output', tmp_path], timeout=900,
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    scripts = {name for package in PACKAGES for name in re.findall(
+        r"'(\S+) = \S+:main'", (package / 'setup.py').read_text())}
+    assert set(re.findall(r'^(\S+) --help: ok$', done.stdout, re.MULTILINE)) == scripts
+    assert 'the Python of README.md: ok' in done.stdout

@@ -2,13 +2,18 @@
 
     python tools/wheel.py --output dist                     # with this Python
     python tools/wheel.py --output dist --python python3.12
+    python tools/wheel.py --output dist --quick             # a minute, no download
 
 The wheel is built from the sdist, so that a file which the sdist lacks is missed here and not by somebody else. From
 the wheel with all extras every console script explains itself and the Python of the tutorial teaches a policy; the
 sdist alone is installed with what the core needs.
+
+``--quick`` takes what the wheel needs from the environment that it is run in, and runs the README's Python in place of
+the tutorial's.
 """
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -18,19 +23,28 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-TUTORIAL = ROOT / 'docs' / 'tutorial' / 'first_policy.md'
+README, TUTORIAL = ROOT / 'README.md', ROOT / 'docs' / 'tutorial' / 'first_policy.md'
 SOURCES = ('setup.py', 'pyproject.toml', 'requirements.txt', 'MANIFEST.in', 'README.md', 'LICENSE', 'ros2_ws/src')
 BUILD = ('import setuptools.build_meta as build, sys; '
          'print(getattr(build, "build_" + sys.argv[1])(sys.argv[2]))')
 
 
-def run(*command: object, cwd: Path) -> str:
-    """Run a command in a folder, with no variable that leads back to the sources; what it prints.
+def run(*command: object, cwd: Path, modules: Path | None = None) -> str:
+    """Run a command in a folder; what it prints.
+
+    Args:
+        command: the words.
+        cwd: the folder, away from the sources.
+        modules: a folder whose modules go before all others.
 
     Raises:
         SystemExit: it failed; the message is its own.
     """
-    done = subprocess.run([str(part) for part in command], cwd=cwd, capture_output=True, text=True, check=False)
+    env = {name: value for name, value in os.environ.items() if name != 'PYTHONPATH'}
+    if modules:
+        env['PYTHONPATH'] = str(modules)
+    done = subprocess.run([str(part) for part in command], cwd=cwd, env=env, capture_output=True, text=True,
+                          check=False)
     if done.returncode:
         raise SystemExit(f'{" ".join(map(str, command))}\n{done.stdout}{done.stderr}')
     return done.stdout
@@ -40,6 +54,13 @@ def environment(python: str, folder: Path) -> Path:
     """An empty environment; its interpreter."""
     run(python, '-m', 'venv', folder, cwd=folder.parent)
     return folder / 'bin' / 'python'
+
+
+def install_setuptools(python: Path, work: Path) -> None:
+    """The pinned ones, to build with."""
+    pin = re.search(r'^setuptools==.*$', (ROOT / 'requirements.txt').read_text(), re.MULTILINE)
+    assert pin
+    run(python, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', pin[0], cwd=work)
 
 
 def build(python: Path, work: Path, output: Path) -> tuple[Path, Path]:
@@ -52,9 +73,6 @@ def build(python: Path, work: Path, output: Path) -> tuple[Path, Path]:
         else:
             shutil.copy(ROOT / part, copy / part)
     output.mkdir(parents=True, exist_ok=True)
-    pin = re.search(r'^setuptools==.*$', (ROOT / 'requirements.txt').read_text(), re.MULTILINE)
-    assert pin
-    run(python, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', pin[0], cwd=work)
     sdist = output / run(python, '-c', BUILD, 'sdist', output, cwd=copy).splitlines()[-1]
     with tarfile.open(sdist) as archive:
         archive.extractall(work, filter='data')
@@ -63,15 +81,29 @@ def build(python: Path, work: Path, output: Path) -> tuple[Path, Path]:
     return sdist, wheel
 
 
-def check(python: Path, work: Path) -> None:
-    """Every console script explains itself, and the tutorial's Python runs."""
-    scripts = run(python, '-c', 'import importlib.metadata as m; print(*(s.name for s in '
-                  'm.distribution("shared-control").entry_points if s.group == "console_scripts"))', cwd=work).split()
-    for script in scripts:
-        run(python.parent / script, '--help', cwd=work)
-        print(f'{script} --help: ok', flush=True)
-    [code] = re.findall(r'```python\n(.*?)```', TUTORIAL.read_text(), re.DOTALL)
-    print(run(python, '-c', code, cwd=work).splitlines()[-1])
+def check(python: Path, scripts: Path, page: Path, work: Path, modules: Path | None = None) -> None:
+    """Every console script in the folder ``scripts`` explains itself, and the Python of ``page`` runs."""
+    names = run(python, '-c', 'import importlib.metadata as m; print(*(s.name for s in '
+                'm.distribution("shared-control").entry_points if s.group == "console_scripts"))',
+                cwd=work, modules=modules).split()
+    for name in names:
+        run(scripts / name, '--help', cwd=work, modules=modules)
+        print(f'{name} --help: ok', flush=True)
+    [code] = re.findall(r'```python\n(.*?)```', page.read_text(), re.DOTALL)
+    code += 'import shared_control; print(shared_control.__file__)'
+    *printed, imported = run(python, '-c', code, cwd=work, modules=modules).splitlines()
+    if Path(imported).is_relative_to(ROOT):
+        raise SystemExit(f'not what was installed, but {imported}, was imported')
+    print(*printed[-1:], f'the Python of {page.name}: ok', sep='\n', flush=True)
+
+
+def check_quickly(work: Path, output: Path) -> None:
+    """With what is installed beside this interpreter, the packages of the wheel before those of the sources."""
+    python, modules = Path(sys.executable), work / 'modules'
+    _, wheel = build(python, work, output)
+    run(python, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', '--no-index', '--no-deps',
+        '--target', modules, wheel, cwd=work)
+    check(python, modules / 'bin', README, work, modules)
 
 
 def main() -> None:
@@ -79,10 +111,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--output', type=Path, default=ROOT / 'dist', help='where sdist and wheel go')
     parser.add_argument('--python', default=sys.executable, help='the interpreter to build and install with')
+    parser.add_argument('--quick', action='store_true', help='install the wheel alone, beside what is installed here')
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
-        sdist, wheel = build(environment(args.python, work / 'build'), work, args.output.resolve())
+        output = args.output.resolve()
+        if args.quick:
+            check_quickly(work, output)
+            return
+        builder = environment(args.python, work / 'build')
+        install_setuptools(builder, work)
+        sdist, wheel = build(builder, work, output)
         print(sdist.name, wheel.name, sep='\n', flush=True)
         core = environment(args.python, work / 'core')
         run(core, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', sdist, cwd=work)
@@ -90,7 +129,7 @@ def main() -> None:
                   ' BALANCE.name, "robot", panda().name)', cwd=work).strip(), flush=True)
         everything = environment(args.python, work / 'all')
         run(everything, '-m', 'pip', 'install', '--quiet', '--disable-pip-version-check', f'{wheel}[all]', cwd=work)
-        check(everything, work)
+        check(everything, everything.parent, TUTORIAL, work)
 
 
 if __name__ == '__main__':

@@ -6,6 +6,7 @@ process of its own, since the variables of a shell can keep ROS from being impor
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -47,6 +48,9 @@ class Neighbours:
         except subprocess.TimeoutExpired:
             raise ValueError(f'ROS did not start within {GIVEN_UP_AFTER:.0f} s; {self._suspects()}') from None
         if self._process.returncode:
+            if self._process.returncode == -signal.SIGBUS:  # LTTng, which ROS traces with, keeps a page in /dev/shm
+                raise ValueError('ROS does not start: SIGBUS, as when /dev/shm is full: `df /dev/shm`, and remove what '
+                                 'is left in it')
             lines = [line for line in errors.splitlines() if line.strip()] or [f'exit code {self._process.returncode}']
             raise ValueError(f'ROS does not start: {lines[-1].strip()}; {self._suspects()}')
         problem = json.loads(said.splitlines()[-1])

@@ -13,13 +13,15 @@ from shared_control_bringup.node_process import REAL_TIME_PRIORITY
 from .finding import Finding, Level
 
 PACKAGES = (
-    'shared-control', 'ros-rclpy', 'ros-rmw-fastrtps-cpp', 'ros-fastrtps', 'numpy', 'pin', 'pybullet', 'mujoco',
+    'shared-control', 'ros-rclpy', 'ros-rmw-fastrtps-cpp', 'ros-fastrtps', 'numpy', 'pin', 'pybullet', 'mujoco-core',
     'gymnasium', 'torch', 'stable-baselines3', 'mcap', 'nicegui')
 """Distributions whose versions a report of a fault needs."""
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 SHARED_MEMORY = Path('/dev/shm')
 SHARED_MEMORY_NEEDED = 32e6
 """Free bytes of /dev/shm for a browser; Docker gives a container 64 MB."""
+SHARED_MEMORY_OF_ROS = 64e3
+"""Free bytes without which ROS ends by SIGBUS: LTTng, which it traces with, keeps a page there."""
 LOOP_PRIORITY = REAL_TIME_PRIORITY + 1
 """The highest real-time priority that a session gives (:mod:`shared_control_bringup.node_process`)."""
 
@@ -62,7 +64,7 @@ def real_time() -> Iterator[Finding]:
     text = f'ulimit -r is {"unlimited" if limit == resource.RLIM_INFINITY else limit}'
     # Root, or who has CAP_SYS_NICE, may without a limit: only trying shows it.
     if limit == resource.RLIM_INFINITY or limit >= LOOP_PRIORITY or _may_be_real_time():
-        yield Finding(Level.OK, 'real-time priority', text)
+        yield Finding(Level.OK, 'real-time priority', f'{text}, and the 1 kHz loop may have it')
     else:
         yield Finding(Level.NOTE, 'real-time priority', f'{text}, below {LOOP_PRIORITY}: the 1 kHz loop shares its '
                       'core with whatever else runs', "as root: echo '@realtime - rtprio 98' > "
@@ -85,15 +87,17 @@ def shared_memory() -> Iterator[Finding]:
     """Room in /dev/shm. Nodes talk without it, unless somebody's own DDS profile says otherwise; a browser needs it."""
     subject = str(SHARED_MEMORY)
     if not SHARED_MEMORY.is_dir() or not os.access(SHARED_MEMORY, os.W_OK):
-        yield Finding(Level.NOTE, subject, 'is not there, or not writable for this user: nodes do without, Chromium '
-                      'does not', f'as root: mount -o remount,rw {subject} (or mount -t tmpfs tmpfs {subject})')
+        yield Finding(Level.NOTE, subject, 'is not there, or not writable for this user: nodes need none of it, '
+                      'Chromium does', f'as root: mount -o remount,rw {subject} (or mount -t tmpfs tmpfs {subject})')
         return
     usage = shutil.disk_usage(SHARED_MEMORY)
     text = f'{usage.free / 1e6:.0f} of {usage.total / 1e6:.0f} MB free'
-    if usage.free < SHARED_MEMORY_NEEDED:
-        yield Finding(Level.NOTE, subject, f'{text}: the nodes do without, Chromium does not',
-                      f'remove what is left in it; or, as root, mount -o remount,size=1g {subject} '
-                      '(Docker: --shm-size=1g, or --ipc=host)')
+    remedy = (f'remove what is left in it; or, as root, mount -o remount,size=1g {subject} '
+              '(Docker: --shm-size=1g, or --ipc=host)')
+    if usage.free < SHARED_MEMORY_OF_ROS:
+        yield Finding(Level.FAULT, subject, f'{text}: ROS does not start', remedy)
+    elif usage.free < SHARED_MEMORY_NEEDED:
+        yield Finding(Level.NOTE, subject, f'{text}: the nodes need none of it, Chromium does', remedy)
     else:
         yield Finding(Level.OK, subject, text)
 
