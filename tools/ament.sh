@@ -17,6 +17,6 @@ for linter in "$@"; do
         *) echo "error: no linter ament_$linter is set up here" >&2; exit 2 ;;
     esac
     # They name every file that is in order, too.
-    "ament_$linter" "${arguments[@]}" > "$said" 2>&1 || { grep --invert-match "^checking" "$said"; exit 1; }
+    "ament_$linter" "${arguments[@]}" > "$said" 2>&1 || { grep --invert-match --extended-regexp "^(checking|\* )" "$said"; exit 1; }
     echo "ament_$linter: no problems"
 done

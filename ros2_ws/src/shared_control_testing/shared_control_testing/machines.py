@@ -14,12 +14,12 @@ from pathlib import Path
 
 from shared_control_testing.nodes import RunningNode, free_domain
 
-PAGE = '''# The doctor's findings
+PAGE = """# The doctor's findings
 
 What `shared-control doctor` prints on a machine where a session runs, and on five that were made sick on purpose; of
 those what is wrong. Written by `python -m shared_control_testing.machines`, which makes the machines so for real,
 as do the tests of the command.
-'''
+"""
 
 
 @dataclass(frozen=True)
