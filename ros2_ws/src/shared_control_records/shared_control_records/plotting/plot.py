@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -51,8 +52,11 @@ class Sheet:
         """What is drawn in."""
         self._line: SubFigure = parts[1]
 
-    def save(self, stem: Path, footer: str, caption: str, dpi: int = DPI) -> None:
+    def save(self, stem: Path, footer: str, caption: str, dpi: int = DPI) -> np.ndarray:
         """Write ``STEM.png``, ``STEM.svg`` and ``STEM.pdf``, each as a whole.
+
+        Returns:
+            The pixels, (height, width, 4), uint8.
 
         Args:
             footer: :func:`origin`.
@@ -65,12 +69,16 @@ class Sheet:
             'pdf': {'Title': stem.name, 'Subject': caption, 'CreationDate': None}}
         with matplotlib.rc_context({'svg.hashsalt': 'shared-control'}):  # the same figure is the same file
             self.figure.dpi = dpi
-            for canvas, kind in ((FigureCanvasAgg, 'png'), (FigureCanvasSVG, 'svg'), (FigureCanvasPdf, 'pdf')):
+            agg = FigureCanvasAgg(self.figure)
+            svg, pdf = FigureCanvasSVG(self.figure), FigureCanvasPdf(self.figure)
+            for canvas, kind in ((agg, 'png'), (svg, 'svg'), (pdf, 'pdf')):
                 image = io.BytesIO()
+                self.figure.set_canvas(canvas)
                 # Not by savefig, which draws everything twice.
-                getattr(canvas(self.figure), f'print_{kind}')(image, metadata=about[kind])
+                getattr(canvas, f'print_{kind}')(image, metadata=about[kind])
                 self.figure.set_layout_engine('none')  # laid out by now; again would take as long as the rest
                 write_atomically(stem.with_name(f'{stem.name}.{kind}'), image.getvalue())
+        return np.asarray(agg.buffer_rgba())
 
 
 @dataclass(frozen=True)

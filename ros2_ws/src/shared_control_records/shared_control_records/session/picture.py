@@ -9,9 +9,10 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_hex, to_rgb
-from matplotlib.image import imread, imsave
+from matplotlib.image import imsave
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox
 from shared_control.rates import POLICY_PERIOD
@@ -89,12 +90,12 @@ def draw_picture(path: Path, title: str, footer: str, bag: Bag | None, tracks: S
         _draw_returns(returns, rows)
         _draw_shares(shares, rows)
         _draw_test_results(results, test)
-        sheet.save(path.with_suffix(''), footer, title, dpi=DPI)
+        pixels = sheet.save(path.with_suffix(''), footer, title, dpi=DPI)
         scale = [axes for axes in figure.axes if axes.get_label() == '<colorbar>']
         parts = (('lessons', [lessons, *scale], False), ('alone', [alone], False), ('moments', [human, agent], True),
                  ('returns', [returns], False), ('shares', [shares], False), ('results', [results], False))
+        sheet.figure.set_canvas(FigureCanvasAgg(sheet.figure))  # by which the parts are measured
         captions = _captions(task, taught, rows, test)
-        pixels = imread(path.with_suffix('.png'))
         return [Panel(name, captions[name], _cut(sheet, pixels, axes), wide) for name, axes, wide in parts]
 
 
@@ -127,7 +128,7 @@ def _cut(sheet: Sheet, pixels: np.ndarray, parts: Sequence[Axes]) -> bytes:
     left, right = (max(round(scale * edge), 0) for edge in (box.x0 - 6, box.x1 + 6))
     top, bottom = (max(len(pixels) - round(scale * edge), 0) for edge in (box.y1 + 6, box.y0 - 6))
     cut = io.BytesIO()
-    imsave(cut, pixels[top:bottom, left:right, :3], format='png')
+    imsave(cut, np.ascontiguousarray(pixels[top:bottom, left:right, :3]), format='png')
     return cut.getvalue()
 
 
