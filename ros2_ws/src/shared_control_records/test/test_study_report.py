@@ -15,7 +15,7 @@ from shared_control_records.study.result import RESULT, TESTS
 from shared_control_records.study_report.measures import away, load_study, run_table
 from shared_control_records.study_report.report import write_study_report
 from shared_control_records.study_report.statistics import Times, beats, bootstrap, improvement, iqm, sooner, survival
-from shared_control_records.study_report.tables import comparison_table, conditions_table
+from shared_control_records.study_report.tables import comparison_table, conditions_table, transfer_table
 from shared_control_testing.studies import made_study
 
 PLAN = """
@@ -154,3 +154,16 @@ def test_a_ball_that_fell_lies_where_the_tray_of_its_task_ends(tmp_path, task, l
     test = run.tests['randomized']
     test.position_error[:] = np.nan
     assert away(test, study.lost(run)).max() == pytest.approx(lost)
+
+
+def test_success_on_other_arms_is_a_measure_and_a_table_by_what_was_changed(tmp_path):
+    (tmp_path / 'plan.yaml').write_text(PLAN + 'tests: [randomized, transfer]\n')
+    study = load_study(made_study(tmp_path / 'study', tmp_path / 'plan.yaml'))
+    runs = run_table(study)
+    assert 'On other arms: episodes that succeed' in set(conditions_table(study, runs).measure)
+    rows = transfer_table(study).to_dict('records')
+    assert [(row['condition'], row['change'], row['runs']) for row in rows] == [
+        ('coached', 'ball of 0.6 kg', 8), ('autonomous', 'ball of 0.6 kg', 8)]
+    for row in rows:
+        assert row['success'] == pytest.approx(runs[runs.condition == row['condition']].elsewhere.mean())
+    assert set(runs.elsewhere) <= {0.0, 1.0}

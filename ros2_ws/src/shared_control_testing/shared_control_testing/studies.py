@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from shared_control.control.references import FREQUENCIES
 from shared_control.rates import POLICY_PERIOD
-from shared_control_learning.evaluation.result import TRACKS, ProtocolResult
+from shared_control_learning.evaluation.result import TRACKS, TRANSFER, ProtocolResult
 from shared_control_records.study.folder import StudyFolder
 from shared_control_records.study.plan import Job
 from shared_control_records.study.result import RunResult, describe, save_result
@@ -21,16 +21,18 @@ def made_study(path: Path, plan: Path, seed: int = 0, missing: int = 0) -> Study
     for job in content.jobs[:len(content.jobs) - missing]:
         own = folder.run(job)
         own.mkdir(parents=True)
-        save_result(made_result(job, np.random.default_rng((seed, job.participant.seed))), own)
+        save_result(made_result(job, np.random.default_rng((seed, job.participant.seed)), content.tests), own)
     return folder
 
 
-def made_result(job: Job, random: np.random.Generator) -> RunResult:
+def made_result(job: Job, random: np.random.Generator, tested: tuple[str, ...] = ()) -> RunResult:
     """A run that is done."""
     good = GOOD[job.condition.preset] > random.random()
     episodes = int(random.integers(3, 9)) if good and job.condition.taught else job.condition.episodes - 2 * good
     tests = [_test('randomized', random, good, 20, 10.0), _test('perturbation', random, good, 1, 30.0),
              *(_test(f'trajectory {frequency:g} Hz', random, good, 1, 20.0) for frequency in FREQUENCIES)]
+    if 'transfer' in tested:
+        tests += [_test(f'{TRANSFER}{name}', random, good, 20, 10.0) for name in ('as taught', 'ball of 0.6 kg')]
     return RunResult(
         **describe(job, simulated=True), first_pass=episodes - 1 if good else None, skilled=episodes if good else None,
         seconds=10.0 * episodes, tests={test.test: test for test in tests},

@@ -9,6 +9,7 @@ from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
 from shared_control_learning.evaluation.result import TRANSFER, ProtocolResult
 from shared_control_learning.presets import preset_for
+from shared_control_sim.changes import AS_TAUGHT
 
 from ..study.folder import StudyFolder
 from ..study.plan import Condition, Plan, load_plan
@@ -108,6 +109,12 @@ def trajectories(run: RunResult) -> list[ProtocolResult]:
     return [test for name, test in run.tests.items() if name.startswith('trajectory')]
 
 
+def transfers(run: RunResult) -> list[ProtocolResult]:
+    """The tests on arms that are not as taught."""
+    return [test for name, test in run.tests.items()
+            if name.startswith(TRANSFER) and name != TRANSFER + AS_TAUGHT.name]
+
+
 def _row(run: RunResult, lost: float) -> dict[str, float | int | str | bool | None]:
     fallen = [fell for name, test in run.tests.items() if not name.startswith(TRANSFER) for fell in test.fallen]
     row: dict[str, float | int | str | bool | None] = {
@@ -131,6 +138,8 @@ def _row(run: RunResult, lost: float) -> dict[str, float | int | str | bool | No
     if moving := trajectories(run):
         row['moving_error'] = 100 * float(np.mean([away(test, lost).mean() for test in moving]))
         row['moving_kept'] = float(np.mean([not test.fallen.any() for test in moving]))
+    if elsewhere := transfers(run):
+        row['elsewhere'] = float(np.mean([test.success.mean() for test in elsewhere]))
     return row
 
 

@@ -18,7 +18,7 @@ from ..study.folder import StudyFolder
 from .figures import draw_all
 from .measures import Study, load_study, lost_error, run_table, times
 from .statistics import survival
-from .tables import comparison_table, conditions_table, group_table
+from .tables import comparison_table, conditions_table, group_table, transfer_table
 
 _PAGE = Path(__file__).with_name('study.html')
 THESIS_REDUCTION = 0.976
@@ -41,7 +41,7 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
         path.mkdir(parents=True, exist_ok=True)
     runs = run_table(study)
     tables = {'runs': runs, 'conditions': conditions_table(study, runs), 'comparisons': comparison_table(study, runs),
-              'groups': group_table(runs)}
+              'groups': group_table(runs), **({'transfer': transfer_table(study)} if 'elsewhere' in runs else {})}
     drawn = []
     footer = origin(study.plan.seed)
     with matplotlib.rc_context(PAPER):

@@ -5,8 +5,9 @@ from itertools import combinations
 
 import numpy as np
 import pandas as pd
+from shared_control_learning.evaluation.result import TRANSFER
 
-from .measures import Study, times
+from .measures import Study, times, transfers
 from .statistics import Estimate, beats, bootstrap, improvement, sooner, survival
 
 
@@ -28,6 +29,7 @@ MEASURES = (
     Measure('pushed_kept', 'Perturbation test: ball kept', '%', lower_is_better=False),
     Measure('moving_error', 'Trajectory tests: |position error|', 'cm'),
     Measure('moving_kept', 'Trajectory tests: ball kept', '%', lower_is_better=False),
+    Measure('elsewhere', 'On other arms: episodes that succeed', '%', lower_is_better=False),
     Measure('workload', 'Workload (raw NASA-TLX)', '0-100'),
 )
 """What conditions are compared by, beside the episodes to skilled. A ball that fell lies where the tray ends."""
@@ -71,6 +73,16 @@ def comparison_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
         for measure in _present(runs):
             rows += _compare(first, second, measure, runs)
     return pd.DataFrame(rows)
+
+
+def transfer_table(study: Study) -> pd.DataFrame:
+    """A row for every condition and arm that is not as taught: share of the episodes that succeed, over the runs."""
+    return pd.DataFrame([
+        {'condition': condition, 'change': test.test.removeprefix(TRANSFER), 'run': run.participant,
+         'success': float(test.success.mean())}
+        for condition in study.conditions for run in study.of(condition) for test in transfers(run)],
+        columns=['condition', 'change', 'run', 'success']).groupby(
+            ['condition', 'change'], sort=False, as_index=False).agg(runs=('run', 'size'), success=('success', 'mean'))
 
 
 def group_table(runs: pd.DataFrame) -> pd.DataFrame:
