@@ -13,11 +13,16 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
     folder = tmp_path / 'session'
     session = start_session('--tutor', 'keyboard', '--test-episodes', 1, '--params-file', unpaced,
                             '--output', folder, terminal=True)
+    session.expect('PRACTICE')
+    session.type(b'q')
+    session.expect('the teaching has not begun')
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)  # sooner it would be the terminal's repetition
+    session.type(b'\r')
     session.expect('TEACH')
     session.expect('time left')
     session.type(b'\x1b[D')
     session.expect('+5.0')
-    time.sleep(4 * HeldKeys.REPEATS_WITHIN)  # sooner it would be the terminal's repetition
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
     session.type(b'a')
     session.expect('+10.0')
     session.expect('left side down')

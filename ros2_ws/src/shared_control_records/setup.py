@@ -9,6 +9,7 @@ setup(
     package_data={
         package_name: ['py.typed'],
         'shared_control_records.session': ['page.html', 'page.css'],
+        'shared_control_records.study': ['form.html'],
         'shared_control_records.study_report': ['study.html'],
     },
     data_files=[

@@ -16,7 +16,7 @@ setup(
         'numpy', 'rosbags', 'mcap', 'zstandard', 'pytest', 'pyyaml',
     ],
     entry_points={'pytest11': ['shared_control = shared_control_testing.plugin']},
-    extras_require={'test': ['pytest']},
+    extras_require={'test': ['pytest', 'selenium', 'axe-core-python']},
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',

@@ -16,7 +16,7 @@ setup(
         'teleop_key_node', 'rclpy', 'nicegui',
         'numpy', 'pin',
     ],
-    extras_require={'test': ['pytest', 'selenium']},
+    extras_require={'test': ['pytest', 'selenium', 'axe-core-python']},
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',

@@ -9,6 +9,7 @@ A verdict is about the last episode that has ended. An episode of teaching that 
 is unlearned and taught again; later it is only labelled.
 """
 
+import json
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from rclpy.node import Node
 from shared_control.env import SharedControlEnv
+from shared_control.files import write_atomically
 from shared_control.plant import PlantInterrupted
 from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.rates import POLICY_PERIOD
@@ -27,6 +29,7 @@ from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.learn import learn
 from shared_control_learning.learner import Learner
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, load_policy, save_policy
+from shared_control_learning.practice import PRACTICE_NAME, Practice
 from shared_control_learning.presets import Preset, preset, preset_for
 from shared_control_learning.warm_up import warm_up
 from shared_control_ros import contract
@@ -83,6 +86,12 @@ class PpoAgentNode(Callbacks):
         self._practises = declare(
             node, 'practice', False, 'Before a new learner is taught, the person alone moves the tray until '
             'learner/start is called (3.4).')
+        rests = declare(
+            node, 'practice_rests', 0, 'Refuse learner/start until the person has brought the ball to rest at the '
+            'goal, for 3 s, so often.', minimum=0, maximum=100)
+        practice_minutes = declare(
+            node, 'practice_minutes', 5.0, 'After this much practice learner/start is not refused any more.',
+            unit='min', minimum=0.1, maximum=60.0)
         self._break_seconds = declare(
             node, 'break_seconds', 0.0, 'Before the first and between all episodes at least, with the time that '
             'learning takes: for a person to read how it went, and to get ready.', unit='s', minimum=0.0, maximum=60.0)
@@ -103,6 +112,7 @@ class PpoAgentNode(Callbacks):
             self._learner = _load(Path(policy), 'policy')
         warm_up(replace(preset(self._learner.name), task=self._learner.task))
         self._seconds_left = minutes * 60.0 - (self._table.taught_seconds if self._table else 0.0)
+        self._practice = Practice(self._learner.task, rests, practice_minutes * 60.0)
         self._episode: Episode | None = None
         self._finish = False
         self._repeat = False
@@ -168,19 +178,28 @@ class PpoAgentNode(Callbacks):
         self._plant.wait_until_up()
 
     def _practise(self) -> None:
-        """The person alone moves the tray; a ball that falls is dropped anew."""
+        """The person alone moves the tray; a ball that falls, or that was brought to rest, is dropped anew."""
+        if not self._practises or self._learner.episode:
+            return
         env = SharedControlEnv(self._plant, self._learner.task, human_only=True)
         hands_off = np.zeros(len(env.task.axes), np.float32)
-        self._practises = self._practises and not self._learner.episode
         while self._practises and not self._finish:
             self._training.enter('practice')
             try:
                 env.reset()
-                failed = False
-                while self._practises and not self._finish and not failed:
-                    failed = env.step(hands_off)[-1]['failed']
+                self._practice.begin()
+                is_over = False
+                while self._practises and not self._finish and not is_over:
+                    info = env.step(hands_off)[-1]
+                    at_rest = self._practice.step(info['state'].position_error)
+                    is_over = info['failed'] or (at_rest and self._practice.wanted > 0)
+                    self._training.rests_left(self._practice.left)
             except PlantInterrupted as error:
                 self.interrupted(error)
+        done = self._practice.as_dict()
+        self.node.get_logger().info(f'practice: {done}')
+        if self._policy_path is not None:
+            write_atomically(self._policy_path.with_name(PRACTICE_NAME), json.dumps(done).encode())
 
     def _take_a_break(self, since: float) -> None:
         """Let the break that began at ``since`` (monotonic clock, s) come to its end, and count it down."""
@@ -218,9 +237,11 @@ class PpoAgentNode(Callbacks):
             self._table.amend(episode)
 
     def _on_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success = self._practises
-        response.message = 'the teaching begins' if self._practises else 'this is no practice'
-        self._practises = False
+        left = self._practice.left
+        response.success = self._practises and not left
+        response.message = ('this is no practice' if not self._practises else 'the teaching begins' if not left else
+                            f'first bring the ball to rest {left} more time{"s" if left > 1 else ""}')
+        self._practises = self._practises and not response.success
         return response
 
     def _on_repeat(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

@@ -15,7 +15,7 @@ FLUSH_SECONDS = 2.0
 
 
 class TrainingTopics:
-    """Publishes phase, episode, time left, share, return, success and a person's verdicts."""
+    """Publishes phase, episode, time left, share, return, success, verdicts and what is left of the practice."""
 
     def __init__(self, node: Node):
         def publisher(topic: Topic) -> Any:
@@ -28,6 +28,8 @@ class TrainingTopics:
         self._share = publisher(contract.HUMAN_SHARE)
         self._success = publisher(contract.SUCCESS)
         self._verdict = publisher(contract.VERDICT)
+        self._rests_left = publisher(contract.RESTS_LEFT)
+        self._told_left = -1
         self.phase = ''
 
     def enter(self, phase: str) -> None:
@@ -61,7 +63,14 @@ class TrainingTopics:
         """What a person says of an episode."""
         self._verdict.publish(KeyValue(key=episode_key(phase, number), value=str(verdict)))
 
+    def rests_left(self, count: int) -> None:
+        """What is left to do in the practice; published when it changes."""
+        if count != self._told_left:
+            self._told_left = count
+            self._rests_left.publish(Int32(data=count))
+
     def flush(self) -> None:
         """Wait until everybody has the last words, or somebody does not take them."""
-        for publisher in (self._phase_publisher, self._return, self._success, self._verdict):
+        for publisher in (self._phase_publisher, self._return, self._success, self._verdict,
+                          self._rests_left):
             publisher.wait_for_all_acked(Duration(seconds=FLUSH_SECONDS))

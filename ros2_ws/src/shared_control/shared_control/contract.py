@@ -109,6 +109,9 @@ EPISODE_RETURN = Topic(
 HUMAN_SHARE = Topic(
     'training/human_share', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz',
     r'0..1: mean of \|M_yh\| / (\|M_yh\| + \|M_yai\|) over the episode so far', latched=True)
+RESTS_LEFT = Topic(
+    'training/rests_left', 'std_msgs/msg/Int32', 100, 'agent', 'screens', 'on change, in practice',
+    'how often the ball still has to be brought to rest before the teaching can begin', latched=True)
 SUCCESS = Topic('training/success', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of a test', '0..1', latched=True)
 VERDICT = Topic(
     'training/verdict', 'diagnostic_msgs/msg/KeyValue', 100, 'agent', 'screens',
@@ -122,7 +125,7 @@ WAITING = Topic(
     'Not in bags',
     latched=True, in_bag=False)
 
-TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS)
+TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS, RESTS_LEFT)
 """Series of a number or a text."""
 TOPICS = (
     JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_VERDICT, HUMAN_WRENCH, AGENT_WRENCH,

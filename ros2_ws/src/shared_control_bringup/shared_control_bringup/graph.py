@@ -56,8 +56,6 @@ class SessionNode:
 
 BREAK_SECONDS = 3.0
 """Before and between episodes, when a person teaches, s."""
-TELLS_LITTLE = {'feedback': 'ball', 'shows_result': False}
-"""Parameters of the page for a person who is to know neither how the robot learns nor what came of it."""
 BESIDE_A_SIMULATOR = {'enabled': True}
 """Parameters of the controller where whoever starts it also starts a simulator. Nowhere else is it enabled without a
 person."""
@@ -82,16 +80,19 @@ NODES = (
         Role.CONTROL_LOOP, after='session_recorder_node'),
     SessionNode('teleop_key_node', lambda s: {
         'task': _of_the_task(s.settings)['task'],
-        'screen': 'auto' if s.shows_screen else 'off', 'in_session': True}, Role.FOREGROUND),
+        'screen': 'auto' if s.shows_screen else 'off', 'in_session': True,
+        'feedback': s.settings.feedback}, Role.FOREGROUND),
     SessionNode('sim_tutor_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'profile': s.settings.profile,
         'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'host': s.settings.page[0], 'port': s.settings.page[1],
-        'session': str(s.folder.path), **(TELLS_LITTLE if s.settings.blind else {})}, Role.STOPPER, tutor='page'),
+        'session': str(s.folder.path), 'feedback': s.settings.feedback,
+        'shows_result': not s.settings.blind}, Role.STOPPER, tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {
         'task': s.settings.task, 'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,
-        'max_minutes': s.settings.minutes, 'practice': s.settings.tutor == 'page',
+        'max_minutes': s.settings.minutes, 'practice': s.shows_screen or s.settings.tutor == 'page',
+        'practice_rests': s.settings.practice_rests, 'practice_minutes': s.settings.practice_minutes,
         'break_seconds': BREAK_SECONDS if s.settings.tutor in ('keyboard', 'page') else 0.0,
         'output': str(s.folder.learner)}, Role.LEADER),
 )

@@ -7,6 +7,7 @@ from typing import Any
 
 from shared_control.control.sharing import WAYS
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
+from shared_control.teaching.feedback import FEEDBACK
 from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_ros.host_and_port import host_and_port
 
@@ -44,7 +45,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add('--seed', f'seed of ball starts, learner and simulated tutor (default: {default.seed})', type=int, metavar='N')
     add('--screen', 'show the lesson in the terminal; --no-screen: print a line an episode instead (default: '
         '--screen)', action=argparse.BooleanOptionalAction)
-    add('--blind', 'tell the person neither how the robot learns nor what came of it, as a study does',
+    add('--practice-rests', 'practise until the ball has been brought to rest this often; 0: until you want to teach '
+        f'(default: {default.practice_rests})', type=int, metavar='N')
+    add('--practice-minutes', 'practise for this long at the most to come to that (default: '
+        f'{default.practice_minutes:g})', type=float, metavar='MIN')
+    add('--feedback', 'what a person is told while teaching. none: what they see. ball: how each episode ended. full: '
+        f"and the robot's push, human share, score and tests (default: {default.feedback}; with --blind: ball)",
+        choices=FEEDBACK)
+    add('--blind', 'tell the person neither condition and folder nor what came of the session, as a study does',
         action='store_true')
     add('--output', 'folder of the session (default: a new one below out/sessions)', type=Path, metavar='FOLDER')
     add('--overwrite', 'remove what an earlier session wrote in that folder, and nothing else', action='store_true')

@@ -6,6 +6,7 @@ from typing import Any
 
 from shared_control.control.sharing import WAYS, Sharing
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
+from shared_control.teaching.feedback import FEEDBACK
 from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
@@ -50,7 +51,13 @@ class Settings:
     screen: bool = True
     """Whether to show the lesson in the terminal."""
     blind: bool = False
-    """Whether the person is told neither how the robot learns nor what came of it."""
+    """Whether the person is told neither condition and folder nor what came of the session."""
+    feedback: str = 'full'
+    """What a person is told while they teach: one of ``FEEDBACK``."""
+    practice_rests: int = 0
+    """Practice until the ball has been brought to rest so often; 0: until the person wants to teach."""
+    practice_minutes: float = 5.0
+    """Practice for this long at the most to come to that, min."""
     earlier_tutors: tuple[str, ...] = ()
     """Who taught the earlier parts of a session that went on with another tutor, as settings.json names them."""
     taught: bool = False
@@ -61,7 +68,8 @@ class Settings:
                                        ('--preset', self.preset, ('', *names(LEARNERS))),
                                        ('--physics', self.physics, names(WORLDS)),
                                        ('--tutor', self.tutor, TUTORS),
-                                       ('--profile', self.profile, TUTOR_NAMES), ('--sharing', self.sharing, WAYS)):
+                                       ('--profile', self.profile, TUTOR_NAMES), ('--sharing', self.sharing, WAYS),
+                                       ('--feedback', self.feedback, FEEDBACK)):
             if value not in choices:
                 raise ValueError(f'{option} has no choice {value!r}; there are {", ".join(choices)}')
         if self.robot:
@@ -72,7 +80,9 @@ class Settings:
                 raise ValueError(f'--robot: {error}') from error
         for option, number, low, high in (
                 ('--episodes', self.episodes, 0, 100_000), ('--minutes', self.minutes, 0.1, 1440.0),
-                ('--test-episodes', self.test_episodes, 0, math.inf), ('--seed', self.seed, 0, 2**31 - 1),
+                ('--test-episodes', self.test_episodes, 0, math.inf),
+                ('--practice-rests', self.practice_rests, 0, 100),
+                ('--practice-minutes', self.practice_minutes, 0.1, 60.0), ('--seed', self.seed, 0, 2**31 - 1),
                 ("--page's port", self.page[1], 0, 65535)):
             if not (low <= number <= high and math.isfinite(number)):
                 upper = f' and at most {high}' if high < math.inf else ''
@@ -96,6 +106,8 @@ class Settings:
         Raises:
             ValueError: see the class; or an option belongs to another tutor.
         """
+        if given.get('blind') and 'feedback' not in given:
+            given = {**given, 'feedback': 'ball'}
         changed = replace(self, **given)
         for name, tutor in (('profile', 'sim'), ('page', 'page')):
             if name in given and changed.tutor != tutor:

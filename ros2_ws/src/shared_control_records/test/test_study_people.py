@@ -1,18 +1,37 @@
 """A real participant's way through a study; the sessions are made up, questions and answers are not."""
 
+import hashlib
 import json
+import socket
+import threading
+import urllib.error
+import urllib.parse
+import urllib.request
 from pathlib import Path
 
 import pytest
+from shared_control_records.study.asking import TerminalAsker
 from shared_control_records.study.folder import StudyError, StudyFolder
-from shared_control_records.study.people import INTERRUPTED, lead_through
+from shared_control_records.study.form_page import FormPage
+from shared_control_records.study.people import INTERRUPTED, asker_of, lead_through, withdraw
+from shared_control_records.study.plan_file import Question
 from shared_control_records.study.progress import SCALES, Progress, ProgressError
 
 PLAN = """
-participants: {real: 2, consent: You may stop at any time., practice_episodes: 1, minutes: 30,
-               session_options: [--params-file, own.yaml]}
+participants:
+  real: 2
+  consent: You may stop at any time.
+  practice_rests: 1
+  practice_minutes: 3
+  minutes: 30
+  teach_on: terminal
+  session_options: [--params-file, own.yaml]
+  before: {age: {ask: "How old are you?", choices: [18 to 30, older]}}
+  after: {comment: {ask: "What do you want to say?"}}
 conditions: {coached: , thesis: }
 """
+BEGINNING = ('yes', '1')
+"""Answers to consent and age."""
 
 
 class Sessions:
@@ -26,8 +45,9 @@ class Sessions:
         self.calls.append(arguments)
         if '--output' in arguments:
             folder = Path(arguments[arguments.index('--output') + 1])
-            folder.mkdir(parents=True)
+            (folder / 'learner').mkdir(parents=True)
             (folder / 'settings.json').write_text('{}')
+            (folder / 'learner' / 'practice.json').write_text('{"rests": 1, "met": true}')
         return self.codes.pop(0) if self.codes else 0
 
 
@@ -47,52 +67,91 @@ def answers(monkeypatch):
     return give
 
 
+def lead(study, sessions):
+    folder, plan = study
+    return lead_through(folder, plan, plan.participant(1), TerminalAsker(), sessions)
+
+
+def progress_of(study):
+    folder, plan = study
+    return Progress.of(folder.person(plan.participant(1)))
+
+
 def test_consent_practice_teaching_and_questions_in_this_order(study, answers):
     folder, plan = study
     sessions = Sessions()
-    answers('yes', '', '', *'123456', '', '10', 'a lot', '101', '20', '30', '40', '50', '60')
-    assert lead_through(folder, plan, plan.participant(1), sessions)
+    thesis = ('10', 'a lot', '101', '20', 'back', '25', '30', '40', '50', '60')
+    answers(*BEGINNING, '', *'123456', '', *thesis, 'Nothing.')
+    assert lead(study, sessions)
     person = folder.person(plan.participant(1))
     assert [call[call.index('--output') + 1] for call in sessions.calls] == [
-        str(person / name) for name in ('practice', 'coached', 'thesis')]
-    assert all('--blind' in call and call[-2:] == ['--params-file', 'own.yaml'] for call in sessions.calls)
-    assert sessions.calls[0][7:-2] == [
-        '--preset', 'coached', '--physics', 'bullet', '--episodes', '1', '--test-episodes', '0']
-    assert sessions.calls[2][7:-2] == [
-        '--preset', 'thesis', '--physics', 'bullet', '--sharing', 'additive', '--minutes', '30.0']
-    progress = Progress.of(person)
+        str(person / name) for name in ('coached', 'thesis')]
+    for call, preset, rests in zip(sessions.calls, ('coached', 'thesis'), ('1', '0'), strict=True):
+        assert call[:2] == ['--tutor', 'keyboard'] and call[6:] == [
+            '--blind', '--feedback', 'ball', '--practice-rests', rests, '--practice-minutes', '3.0',
+            '--minutes', '30.0', '--preset', preset, '--physics', 'bullet', '--sharing', 'additive',
+            '--params-file', 'own.yaml']
+    progress = progress_of(study)
     assert progress.taught == ['coached', 'thesis'] and progress.consented
-    assert progress.tlx['thesis'] == dict(zip(SCALES, (10, 20, 30, 40, 50, 60), strict=True))
-    assert lead_through(folder, plan, plan.participant(1), Sessions()), 'nothing is left to do'
+    assert progress.consent_sha256 == hashlib.sha256(b'You may stop at any time.').hexdigest()
+    assert progress.tlx['thesis'] == dict(zip(SCALES, (10, 25, 30, 40, 50, 60), strict=True))
+    assert (progress.before, progress.after) == ({'age': '18 to 30'}, {'comment': 'Nothing.'})
+    assert progress.practice == {'rests': 1, 'met': True}
+    assert lead(study, Sessions()), 'nothing is left to do'
 
 
 def test_without_consent_nothing_is_kept(study, answers):
     folder, plan = study
     answers('no')
-    assert not lead_through(folder, plan, plan.participant(1), Sessions())
+    assert not lead(study, Sessions())
     assert [path.name for path in folder.person(plan.participant(1)).iterdir()] == ['.lock']
 
 
 def test_what_was_interrupted_goes_on_there(study, answers):
     folder, plan = study
-    answers('yes', '', '')
-    sessions = Sessions(0, INTERRUPTED)
-    assert not lead_through(folder, plan, plan.participant(1), sessions)
+    answers(*BEGINNING, '', '1')
+    sessions = Sessions(INTERRUPTED)
+    assert not lead(study, sessions)
     answers('', '1', '2')
     with pytest.raises(StopIteration):  # in place of Ctrl-C at the third question
-        lead_through(folder, plan, plan.participant(1), sessions)
-    assert sessions.calls[2] == ['--resume', str(folder.person(plan.participant(1)) / 'coached')]
-    answers('3', '4', '5', '6', '', *'123456')
-    assert lead_through(folder, plan, plan.participant(1), sessions)
-    assert list(Progress.of(folder.person(plan.participant(1))).tlx['coached'].values()) == [1, 2, 3, 4, 5, 6]
+        lead(study, sessions)
+    assert sessions.calls[1] == ['--resume', str(folder.person(plan.participant(1)) / 'coached')]
+    answers('3', '4', '5', '6', '', *'123456', '')
+    assert lead(study, sessions)
+    assert list(progress_of(study).tlx['coached'].values()) == [1, 2, 3, 4, 5, 6]
+
+
+@pytest.mark.parametrize(('choice', 'what', 'left'), [('2', 'keep', True), ('3', 'delete', False)])
+def test_who_stops_may_leave_and_says_what_becomes_of_the_data(study, answers, choice, what, left):
+    folder, plan = study
+    run = folder.path / 'runs' / 'coached' / 'p01'
+    run.mkdir(parents=True)
+    answers(*BEGINNING, '', choice)
+    assert not lead(study, Sessions(INTERRUPTED))
+    assert (folder.person(plan.participant(1)) / 'coached').exists() is left and run.exists() is left
+    progress = progress_of(study)
+    assert progress.withdrawn == what and bool(progress.before) is left and bool(progress.consented) is left
+    with pytest.raises(StudyError, match='participant 1 has withdrawn'):
+        lead(study, Sessions())
+
+
+def test_who_kept_may_have_it_deleted_later_and_not_the_other_way_round(study, answers):
+    folder, plan = study
+    participant = plan.participant(1)
+    with pytest.raises(StudyError, match='has not begun'):
+        withdraw(folder, plan, participant, 'keep')
+    answers(*BEGINNING, '', '2')
+    assert not lead(study, Sessions(INTERRUPTED))
+    for what, then in (('keep', 'keep'), ('delete', 'delete'), ('keep', 'delete')):
+        withdraw(folder, plan, participant, what)
+        assert progress_of(study).withdrawn == then
 
 
 def test_a_session_that_fails_is_said_and_done_again(study, answers):
-    folder, plan = study
-    answers('yes', '')
-    with pytest.raises(StudyError, match='practice failed'):
-        lead_through(folder, plan, plan.participant(1), Sessions(1))
-    assert not Progress.of(folder.person(plan.participant(1))).practised
+    answers(*BEGINNING, '')
+    with pytest.raises(StudyError, match='coached failed'):
+        lead(study, Sessions(1))
+    assert not progress_of(study).taught
 
 
 @pytest.mark.parametrize(('content', 'said'), [
@@ -103,3 +162,100 @@ def test_a_damaged_progress_is_named(study, content, said):
     (folder.person(plan.participant(1)) / 'progress.json').write_text(json.dumps(content))
     with pytest.raises(ProgressError, match=rf'progress\.json is damaged: {said}'):
         Progress.of(folder.person(plan.participant(1)))
+
+
+class Visitor:
+    """A browser without a screen."""
+
+    def __init__(self, page):
+        self._address = page.address
+
+    def get(self, **headers):
+        request = urllib.request.Request(self._address, headers=headers)
+        return urllib.request.urlopen(request, timeout=20).read().decode()
+
+    def send(self, **fields):
+        """Fill in the form that is shown; what comes then."""
+        shown = self.get()
+        key = shown.partition('name="key" value="')[2].partition('"')[0]
+        return urllib.request.urlopen(
+            self._address, urllib.parse.urlencode({'key': key, **fields}).encode(), timeout=20).read().decode()
+
+
+@pytest.fixture
+def asked():
+    """``asked(method, *arguments)``: a page that asks, a visitor, and how to wait for the answer."""
+    with socket.create_server(('127.0.0.1', 0)) as free:
+        page = FormPage(port=free.getsockname()[1])
+
+    def ask(method, *arguments):
+        given = []
+        thread = threading.Thread(target=lambda: given.append(getattr(page, method)(*arguments)), daemon=True)
+        thread.start()
+
+        def answer():
+            thread.join(20)
+            return given[0]
+        visitor = Visitor(page)
+        for _ in range(200):
+            try:
+                visitor.get(**{'Sec-Fetch-Mode': 'cors'})  # as a script that looks whether there is something
+                break
+            except urllib.error.URLError:
+                threading.Event().wait(0.05)
+        return visitor, answer
+
+    return ask
+
+
+def test_a_page_asks_for_consent_and_shows_no_markup_of_the_text(asked):
+    visitor, answer = asked('consent', 'Do <b>you</b> agree?\nYou may stop.')
+    assert 'Do &lt;b&gt;you&lt;/b&gt; agree?' in visitor.get()
+    assert 'I do not agree' in visitor.send(choice='perhaps'), 'what is no answer is asked again'
+    assert 'Thank you' in visitor.send(choice='no')
+    assert answer() is False
+
+
+def test_a_page_asks_for_the_workload(asked):
+    kept = {}
+    visitor, answer = asked('rate', 'How was it?', SCALES, kept.__setitem__)
+    assert visitor.get().count('type="range"') == len(SCALES)
+    for wrong in ({'mental': '5'}, {**dict.fromkeys(SCALES, '5'), 'effort': '101'}, dict.fromkeys(SCALES, 'nan')):
+        assert 'type="range"' in visitor.send(**wrong)
+    visitor.send(**dict.fromkeys(SCALES, '35'))
+    answer()
+    assert kept == dict.fromkeys(SCALES, 35.0)
+
+
+def test_a_page_asks_the_questions_of_the_plan(asked):
+    questions = {'age': Question(ask='Your age?', choices=['18 to 30', 'older']), 'comment': Question(ask='And?')}
+    visitor, answer = asked('answer', 'Before you begin', questions)
+    assert 'Your age?' in visitor.send(age='12', comment='')
+    visitor.send(age='older', comment=' fine ')
+    assert answer() == {'age': 'older', 'comment': 'fine'}
+
+
+def test_the_last_page_ends_by_itself_once_it_is_shown(asked):
+    visitor, answer = asked('tell', 'That was all. Thank you.')
+    assert 'You can close this window.' in visitor.get(**{'Sec-Fetch-Mode': 'navigate'})
+    answer()
+
+
+def test_other_pages_may_not_speak_to_the_form(asked):
+    visitor, answer = asked('ready', 'Rest')
+    for headers in ({'Host': 'evil.example'}, {'Origin': 'http://evil.example'}):
+        with pytest.raises(urllib.error.HTTPError, match='403'):
+            visitor.get(**headers)
+    visitor.send(choice='go_on')
+    answer()
+
+
+def test_people_are_asked_where_they_teach(study):
+    _, plan = study
+    people = plan.people.model_copy(update={'teach_on': 'page', 'session_options': []})
+    assert asker_of(people).address == 'http://127.0.0.1:8088/'
+    for options in (['--page', '127.0.0.1:9000'], ['--page=127.0.0.1:9000']):
+        assert asker_of(people.model_copy(update={'session_options': options})).address == 'http://127.0.0.1:9000/'
+    for wrong in ('0.0.0.0:8088', '127.0.0.1:0', '127.0.0.1'):
+        with pytest.raises(ValueError):
+            asker_of(people.model_copy(update={'session_options': ['--page', wrong]}))

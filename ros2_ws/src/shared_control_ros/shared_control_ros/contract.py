@@ -70,6 +70,7 @@ TIME_LEFT = ros_topic(table.TIME_LEFT)
 EPISODE_RETURN = ros_topic(table.EPISODE_RETURN)
 HUMAN_SHARE = ros_topic(table.HUMAN_SHARE)
 SUCCESS = ros_topic(table.SUCCESS)
+RESTS_LEFT = ros_topic(table.RESTS_LEFT)
 VERDICT = ros_topic(table.VERDICT)
 WAITING = ros_topic(table.WAITING)
 

@@ -7,6 +7,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from importlib.resources import files
 from typing import Any
 
 from selenium.webdriver import ActionChains, Chrome, ChromeOptions
@@ -24,6 +25,14 @@ _BALL_ON_SCREEN = """
     const view = getElement(teachPage.scene);
     const ball = [...view.objects.values()].find(({mesh}) => mesh?.name === 'ball').mesh;
     return (ball.getWorldPosition(ball.position.clone()).project(view.camera).x + 1) / 2 * view.$el.clientWidth"""
+
+_NAMED = ('button', 'link', 'slider', 'combobox', 'textbox', 'radio', 'image', 'img', 'group', 'dialog')
+_MIDDLE = """
+    const element = document.querySelector('{selector}');
+    const box = element.getBoundingClientRect(), x = box.left + box.width / 2, y = box.top + box.height / 2;
+    const front = document.elementFromPoint(x, y);
+    if (!element.contains(front)) throw new Error(`{selector} is behind ${{front?.outerHTML.slice(0, 200)}}`);
+    return [x, y]"""
 
 
 def serve(*arguments: str) -> tuple[subprocess.Popen[str], str]:
@@ -121,6 +130,35 @@ class Browser:
     def chart(self, name: str) -> list[list[Any]]:
         """The data of a chart's series."""
         return self.script(f'return getElement(teachPage.{name}).chart.getOption().series.map((s) => s.data)')
+
+    def hold_as_a_phone(self, width: int, height: int) -> None:
+        """Be a phone of so many CSS pixels, with a screen that is touched."""
+        self.driver.execute_cdp_cmd('Emulation.setDeviceMetricsOverride', {
+            'width': width, 'height': height, 'deviceScaleFactor': 2, 'mobile': True})
+        self.driver.execute_cdp_cmd('Emulation.setTouchEmulationEnabled', {'enabled': True, 'maxTouchPoints': 2})
+
+    def touch(self, selector: str) -> None:
+        """Put a finger on the middle of an element, which must be in sight and in front there, and lift it."""
+        x, y = self.script(_MIDDLE.format(selector=selector))
+        for kind, points in (('touchStart', [{'x': x, 'y': y}]), ('touchEnd', [])):
+            self.driver.execute_cdp_cmd('Input.dispatchTouchEvent', {'type': kind, 'touchPoints': points})
+
+    def barriers(self) -> list[str]:
+        """What axe-core finds on the page as it is now that is serious or critical: rule, and where."""
+        if not self.script('return Boolean(window.axe)'):
+            self.script((files('axe_core_python') / 'axe.min.js').read_text(encoding='utf-8'))
+        found = self.driver.execute_async_script("""
+            const done = arguments[0];
+            axe.run(document, {resultTypes: ["violations"]}).then((r) => done(r.violations), (e) => done(String(e)))""")
+        assert isinstance(found, list), found
+        return [f'{rule["id"]} ({rule["impact"]}): {node["target"]} {node["failureSummary"]}' for rule in found
+                if rule['impact'] in ('serious', 'critical') for node in rule['nodes']]
+
+    def nameless(self) -> list[dict[str, Any]]:
+        """What a screen reader would stop at without being able to say what it is."""
+        nodes = self.driver.execute_cdp_cmd('Accessibility.getFullAXTree', {})['nodes']
+        return [node for node in nodes if not node['ignored'] and node['role']['value'] in _NAMED
+                and not node.get('name', {}).get('value', '').strip()]
 
     def complaints(self) -> list[str]:
         """Errors that the page has logged."""

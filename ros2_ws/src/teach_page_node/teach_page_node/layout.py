@@ -10,7 +10,7 @@ from shared_control.scene import Scene
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
-from shared_control_ros.watching.words import NO_LESSON, STARTING, words_for
+from shared_control_ros.watching.words import NO_LESSON, STARTING, practice_words, words_for
 
 from .arm_scene import build_scene
 from .from_above import view_from_above
@@ -23,12 +23,15 @@ _KEYS = {Key.LEFT: ('←', 'push left'), Key.UP: ('↑', 'push away'), Key.SPACE
 _MOMENTS = (('human', 'you'), ('agent', 'robot'), ('applied', 'together'))
 _NOTCHES = round(HUMAN_MOMENT_LIMIT / KEYSTROKE)
 """How many presses the largest push takes."""
+RESTS_MAX = 100
+"""The largest practice_rests of the agent."""
 _HUMAN, _AGENT, _SUM = '#c2410c', '#0b63a5', '#495057'
 
 
 def build(is_replay: bool, task: Task = BALANCE, showing: Showing = Showing()) -> None:
     """One page, for ``task``."""
-    ui.add_head_html('<link rel="stylesheet" href="/static/page.css">'
+    ui.add_head_html('<script>document.documentElement.lang = "en"</script>'  # NiceGUI does not say it
+                     '<link rel="stylesheet" href="/static/page.css">'
                      '<script type="module" src="/static/no_graphics_card.js"></script>')
     from_above = len(task.axes) > 1
     kind = f'{"replay" if is_replay else "live"} {"two-axes" if from_above else "one-axis"}'
@@ -53,7 +56,7 @@ def build(is_replay: bool, task: Task = BALANCE, showing: Showing = Showing()) -
             if not is_replay:
                 _buttons()
     if not is_replay:
-        _end_card()
+        _end_card('Thank you.' if showing.in_session and not showing.shows_result else 'Thank you, you are finished.')
     _part('focus', 'button').classes('veil').props('aria-label="Click here to teach"')
     words = {**_numbers(task), 'scene': scene.id, **{name: chart.id for name, chart in charts.items()},
              **_words(task, showing)}
@@ -74,7 +77,10 @@ def _numbers(task: Task) -> dict[str, Any]:
 
 def _words(task: Task, showing: Showing) -> dict[str, Any]:
     nothing = STARTING if showing.in_session else NO_LESSON
-    return {'words': {**words_for(task), 'nothing': nothing}, 'marks': showing.marks, 'tested': showing.tested}
+    return {'words': {**words_for(task), 'nothing': nothing},
+            'goes_on': showing.in_session and not showing.shows_result,
+            'practice': [practice_words(left) for left in range(RESTS_MAX + 1)],
+            'marks': showing.marks, 'tested': showing.tested}
 
 
 def _part(name: str, tag: str = 'div') -> ui.element:
@@ -202,9 +208,9 @@ def _button(name: str, text: str, what: str = '', label: str = '') -> ui.element
     return button
 
 
-def _end_card() -> None:
+def _end_card(title: str) -> None:
     with _part('end').classes('end').props('hidden role=dialog aria-labelledby=end-title'), ui.element('div'):
-        ui.html('Thank you, you are finished.', sanitize=False, tag='h2').props('id=end-title tabindex=-1')
+        ui.html(title, sanitize=False, tag='h2').props('id=end-title tabindex=-1')
         _text('end-words').classes('result').props('role=status aria-live=polite')
         ui.element('img').props('data-part=end-picture hidden alt="What happened in the session, in one picture"')
         with ui.element('div').classes('choices'):
@@ -224,9 +230,10 @@ def _moment_options(task: Task) -> dict[str, Any]:
               for name, colour, width, dash in (('human', _HUMAN, 3, 'solid'), ('robot', _AGENT, 1.5, 'solid'),
                                                 ('together', _SUM, 1, 'dotted'))
               for row in task.axes]
-    return {**_axes(), 'grid': {'left': 42, 'right': 10, 'top': 24, 'bottom': 22},
-            'legend': {'top': 0, 'right': 8, 'itemHeight': 8, 'itemGap': 12, 'textStyle': {'fontSize': 11},
-                       'type': 'scroll'},
+    lines = 1 if len(task.axes) == 1 else 2  # of the legend
+    return {**_axes(), 'grid': {'left': 42, 'right': 10, 'top': 6 + 18 * lines, 'bottom': 22},
+            'legend': {'top': 0, 'left': 42, 'right': 8, 'itemHeight': 8, 'itemWidth': 18, 'itemGap': 8,
+                       'textStyle': {'fontSize': 11}},
             'xAxis': {'type': 'value', 'min': -CHART_SECONDS, 'max': 0, 'interval': 5,
                       'axisLabel': {'formatter': '{value} s'}},
             'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound / 2},

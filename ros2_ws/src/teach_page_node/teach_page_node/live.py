@@ -79,7 +79,8 @@ class LiveDesk:
         return Picture(
             q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch, tilt=scene.tilt,
             asked=self._human.update(now), parts=scene.parts if full else None,
-            phase=scene.phase, episode=scene.episode, time_left=scene.time_left, next_in=scene.next_in,
+            phase=scene.phase, episode=scene.episode, time_left=scene.time_left, rests_left=scene.rests_left,
+            next_in=scene.next_in,
             outcome=None if self.showing.feedback == 'none' else scene.outcome,
             ended=scene.ended, verdict=scene.verdict,
             ends_teaching=self._requests.ending, ending=self._ended(now),

@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from rclpy.node import Node
+from shared_control.teaching.feedback import FEEDBACK
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.parameters import declare
 from shared_control_ros.runner import Stop, run
@@ -17,7 +18,7 @@ from shared_control_ros.task_parameter import declare_task
 from .address import TOKEN_VARIABLE
 from .live import LiveDesk
 from .server import PageServer
-from .showing import FEEDBACK, Showing
+from .showing import Showing
 
 
 class TeachPageNode:

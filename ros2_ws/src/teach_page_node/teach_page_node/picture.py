@@ -36,6 +36,8 @@ class Picture:
     episode: int | None = None
     time_left: float | None = None
     """What is left of the episode, s."""
+    rests_left: int = 0
+    """How often the ball still has to be brought to rest before the practice may end."""
     next_in: float | None = None
     """Until the next episode begins, s."""
     outcome: Outcome | None = None
@@ -74,7 +76,8 @@ class Picture:
             'q': _rounded(self.q), 'ball': _rounded(self.ball), 'on_tray': _rounded(self.ball_on_tray),
             'pitch': _rounded(self.pitch), 'tilt': _rounded(self.tilt),
             'asked': _rounded(self.asked), **self._moments(), 'phase': self.phase, 'episode': self.episode,
-            'next_in': _rounded(self.next_in), 'outcome': None if self.outcome is None else asdict(self.outcome),
+            'rests_left': self.rests_left, 'next_in': _rounded(self.next_in),
+            'outcome': None if self.outcome is None else asdict(self.outcome),
             'ended': self.ended, 'verdict': self.verdict,
             'ends_teaching': self.ends_teaching, 'ending': self.ending, 'trace': self.trace,
             'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share),

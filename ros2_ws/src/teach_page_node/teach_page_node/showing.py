@@ -2,17 +2,13 @@
 
 from dataclasses import dataclass
 
-FEEDBACK = ('none', 'ball', 'full')
-"""``none``: tray, ball, and one's own push. ``ball``: and how each episode ended. ``full``: and the robot's push, human
-share, score and tests."""
-
 
 @dataclass(frozen=True)
 class Showing:
     """What a page shows, besides what moves."""
 
     feedback: str = 'full'
-    """One of ``FEEDBACK``."""
+    """One of :data:`shared_control.teaching.feedback.FEEDBACK`."""
     in_session: bool = False
     """A lesson is about to be given: nothing known of it means that it starts."""
     shows_result: bool = True

@@ -11,6 +11,7 @@ from rclpy.node import Node
 from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key
 from shared_control.plugins import DEVICES, load, names
 from shared_control.teaching.device import Device
+from shared_control.teaching.feedback import FEEDBACK
 from shared_control.verdict import Verdict
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
@@ -63,6 +64,9 @@ class TeleopKeyNode:
             node, 'characters', 'auto', 'What the screen is drawn with; auto: as the locale has it.',
             choices=('auto', 'unicode', 'ascii'))
 
+        self._feedback = declare(
+            node, 'feedback', 'full', 'What is told besides tray, ball and keys. ball: how each episode ended. '
+            "full: and the robot's push, human share, score and tests.", choices=FEEDBACK)
         self._in_session = declare(
             node, 'in_session', False, 'A lesson is about to be given: until the agent speaks, the screen says that it '
             'starts, and after its end that it is over.')
@@ -98,7 +102,7 @@ class TeleopKeyNode:
             return None
         keys = self._task.keys if self._device == KEYS_DEVICE else {}
         return Panel(self.node, terminal, self._rate, self._frame_rate, self._keystroke, self._moment_limit,
-                     self._characters, keys, self._task, self._in_session)
+                     self._characters, keys, self._task, self._in_session, self._feedback)
 
     def run(self, stop: Stop) -> None:
         """Turn what the person does into M_h until told to stop."""

@@ -49,13 +49,15 @@ class Panel:
         keystroke: change of M_yh at one press, N m.
         moment_limit: bound of |M_yh|, N m.
         in_session: whether a lesson is about to be given.
+        feedback: what the person is told: one of ``FEEDBACK``.
         characters: ``auto``, ``unicode`` or ``ascii``.
         task: what is taught.
         keys: what the keys move; none when the person holds another device: then only q, p and the screen are here.
     """
 
     def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, keystroke: float,
-                 moment_limit: float, characters: str, keys: KeyMap, task: Task, in_session: bool):
+                 moment_limit: float, characters: str, keys: KeyMap, task: Task, in_session: bool,
+                 feedback: str):
         self.terminal = terminal
         known = {*keys, Key.SPACE} if keys else set()
         self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
@@ -70,7 +72,7 @@ class Panel:
         self._judge = Judge(node, self.tell)
         self._observer = Observer(node, task)
         self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit, keystroke=keystroke,
-                            in_session=in_session)
+                            in_session=in_session, feedback=feedback)
         self._restarts = 0
         self._paused_stamp_ns = 0
         self._frame_period = 1.0 / frame_rate
@@ -122,7 +124,9 @@ class Panel:
     def _finish(self) -> None:
         """The first press asks, the second ends the teaching, and another takes that back."""
         now = time.monotonic()
-        if self.requests.ending:
+        if self._scene.phase == 'practice':
+            self.tell('This is practice: the teaching has not begun.')
+        elif self.requests.ending:
             self.requests.keep_teaching()
         elif now < self._asked_until:
             self._asked_until = 0.0

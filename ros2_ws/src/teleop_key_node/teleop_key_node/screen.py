@@ -5,13 +5,15 @@ import math
 from shared_control.verdict import Verdict
 from shared_control.wrench import AXIS_NAMES
 from shared_control_ros.watching.scene import Scene
-from shared_control_ros.watching.words import NO_LESSON, STARTING, Words, words_for
+from shared_control_ros.watching.words import NO_LESSON, STARTING, Words, practice_words, words_for
 
 from .picture import STEEPER, draw
 
 _MIN_PICTURE = 5
 """Lines; less important lines go before the picture gets smaller, except in a tiny window."""
 _SPARKS = {True: '▁▂▃▄▅▆▇█', False: '_.-:=+*#'}
+_TIME_CELLS = 10
+"""Length of the bar of the time left."""
 _ARROWS = {True: ('←', '→'), False: ('<-', '->')}
 
 
@@ -22,7 +24,7 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
         unicode: False draws with ASCII alone.
     """
     # Above and below the picture: (importance, line). When the window is low, the least important lines go.
-    above = [(9, _title(scene, width)), (1, ''), (8, _headline(scene, width)), (0, '')]
+    above = [(9, _title(scene, width, unicode)), (1, ''), (8, _headline(scene, width)), (0, '')]
     below = [
         (6, _tilt(scene, width)), (2, ''),
         (7, _push(scene, width, unicode)),
@@ -49,11 +51,20 @@ def _fitting(width: int, *texts: str) -> str:
     return next((text for text in texts if len(text) <= width), texts[-1])
 
 
-def _title(scene: Scene, width: int) -> str:
+def _title(scene: Scene, width: int, unicode: bool) -> str:
     episode = '' if scene.episode is None else f'   episode {scene.episode}'
     left = '' if scene.time_left is None else f'   time left {scene.time_left:4.1f} s'
     what = f': {scene.task.name}' if scene.from_above else ' to balance the ball'
-    return _fitting(width, f' Teach the robot{what}' + episode + left, (episode + left)[2:])
+    bar = '' if scene.time_left is None else f' {_time_bar(scene, scene.time_left, unicode)}'
+    return _fitting(width, f' Teach the robot{what}' + episode + left + bar, f' Teach the robot{what}' + episode + left,
+                    (episode + left + bar)[2:], (episode + left)[2:])
+
+
+def _time_bar(scene: Scene, left: float, unicode: bool) -> str:
+    length = scene.task.test_seconds if scene.phase == 'test' else scene.task.episode_seconds
+    full = round(min(max(left / length, 0.0), 1.0) * _TIME_CELLS)
+    done, rest = ('█', '░') if unicode else ('#', '.')
+    return done * full + rest * (_TIME_CELLS - full)
 
 
 def _headline(scene: Scene, width: int) -> str:
@@ -77,9 +88,11 @@ def _lesson(scene: Scene) -> Words:
         return STARTING if scene.in_session else NO_LESSON
     title, text = words_for(scene.task).get(scene.phase, Words(scene.phase, ''))
     if scene.phase in ('learn', 'wait', 'done'):
-        outcome = '' if scene.outcome is None else scene.outcome.words
+        outcome = '' if scene.outcome is None or scene.feedback == 'none' else scene.outcome.words
         soon = '' if scene.next_in is None else f'Next in {math.ceil(scene.next_in)}.'
         text = ' '.join(filter(None, (outcome, soon))) or text
+    elif scene.phase == 'practice':
+        text = practice_words(scene.rests_left)
     elif scene.ending:
         text = 'The teaching ends with this episode. q: go on teaching.'
     return Words(title, text)
@@ -140,6 +153,8 @@ def _push(scene: Scene, width: int, unicode: bool) -> str:
 
 def _moments(scene: Scene, width: int, unicode: bool) -> list[tuple[int, str]]:
     """Lines for the moments of human, robot and both, with their importance."""
+    if scene.feedback != 'full':
+        return []
     human, agent, applied = (scene.human, None, None) if scene.parts is None else scene.parts
     sources = ((7, scene.hand, 'M_yh', human), (4, 'robot', 'M_yai', agent), (5, 'together', 'M_y', applied))
     if not scene.from_above:
@@ -166,7 +181,7 @@ def _bar(who: str, symbol: str, moment: float | None, scene: Scene, width: int, 
 
 
 def _share(scene: Scene, width: int, unicode: bool) -> str:
-    if scene.human_share is None:
+    if scene.human_share is None or scene.feedback != 'full':
         return ''
     cells = max(min(width // 2, 40), 4)
     share = min(max(scene.human_share, 0.0), 1.0)
@@ -178,6 +193,8 @@ def _share(scene: Scene, width: int, unicode: bool) -> str:
 
 def _returns(scene: Scene, width: int, unicode: bool) -> str:
     text = ''
+    if scene.feedback != 'full':
+        return text
     if returns := scene.counted_returns:
         sparks = _SPARKS[unicode]
         shown = returns[-max(min(width - 46, 40), 8):]
@@ -185,7 +202,7 @@ def _returns(scene: Scene, width: int, unicode: bool) -> str:
         span = (high - low) or 1.0
         levels = ''.join(sparks[round((value - low) / span * (len(sparks) - 1))] for value in shown)
         text = f' {"score":14} {levels}  last {shown[-1]:.0f}, best {max(returns):.0f}'
-    if scene.success is not None:
+    if scene.success is not None and not scene.in_session:  # a session's own test, of more episodes, is told at its end
         text += f'   last test {100 * scene.success:.0f} %'
     return text
 
@@ -209,7 +226,9 @@ def _help(scene: Scene, width: int, unicode: bool) -> str:
     left, right = _ARROWS[unicode]
     keys = ('← ↑ ↓ → or a w s d' if unicode else 'arrows or a w s d') if scene.from_above else f'{left} {right} or a d'
     short = keys.partition(' or ')[0]
-    end = 'Enter: start teaching' if scene.phase == 'practice' else 'q: done teaching'
+    end = 'q: done teaching'
+    if scene.phase == 'practice':
+        end = 'Enter: not yet' if scene.rests_left else 'Enter: start teaching'
     word = end.replace(': ', ' ')
     return _fitting(
         width,

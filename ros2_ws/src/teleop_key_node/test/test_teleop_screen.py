@@ -103,7 +103,10 @@ def test_bars_keep_to_their_place_beyond_the_scale():
     ({}, 'your share     ██████████░'),
     ({}, '25 %'),
     ({}, '▁██  last 40, best 40   last test 95 %'),
-    ({}, 'episode 3   time left  9.4 s'),
+    ({}, 'episode 3   time left  9.4 s ██████░░░░'),
+    ({'phase': 'test', 'time_left': 15.0}, 'time left 15.0 s ██████████'),
+    ({'phase': 'practice', 'rests_left': 2}, 'Alone, bring the ball to rest on the mark for 3 s, twice more.'),
+    ({'phase': 'practice', 'rests_left': 1}, 'Enter not yet'),
     ({'message': ' hello'}, ' hello'),
     ({'ended': ('teach', 2)}, ' episode 2   g: good   b: bad   x: discard '),
     ({'ended': ('teach', 2), 'verdict': Verdict.SUCCESS},
@@ -114,6 +117,16 @@ def test_bars_keep_to_their_place_beyond_the_scale():
 ])
 def test_what_is_said(changes, said):
     assert said in '\n'.join(render(replace(SCENE, **changes), 80, 24))
+
+
+@pytest.mark.parametrize(('feedback', 'shown', 'hidden'), [
+    ('full', ('M_yai', 'your share', 'score', 'The ball fell'), ()),
+    ('ball', ('The ball fell', 'push'), ('M_yai', 'your share', 'score')),
+    ('none', ('push',), ('M_yai', 'your share', 'score', 'The ball fell'))])
+def test_a_person_is_told_as_much_as_the_study_wants(feedback, shown, hidden):
+    scene = replace(SCENE, feedback=feedback, ball_on_tray=np.zeros(3))
+    text = '\n'.join(render(scene, 80, 24) + render(replace(scene, phase='learn', outcome=FELL), 80, 24))
+    assert [word for word in shown if word not in text] == [] == [word for word in hidden if word in text]
 
 
 @pytest.mark.parametrize('unicode', [True, False])

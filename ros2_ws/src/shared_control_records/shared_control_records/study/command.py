@@ -26,21 +26,32 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                         help='do the runs on this Ray cluster, auto: the one running here (default: on this machine)')
     parser.add_argument('--participant', type=int, metavar='N', default=None,
                         help='lead this real participant through what is left to do (default: what needs nobody)')
+    parser.add_argument('--withdraw', choices=('keep', 'delete'), default=None,
+                        help='--participant takes no further part: keep, or delete, what was recorded of them '
+                             '(default: they go on)')
 
 
 def run(args: argparse.Namespace) -> int:
     """Do what is left of a study; the exit code."""
     from .folder import StudyFolder
-    from .people import INTERRUPTED, lead_through
+    from .people import INTERRUPTED, asker_of, lead_through, withdraw
     from .run import do_runs
     if args.workers < 1:
         raise ValueError(f'--workers is {args.workers}, expected at least 1')
+    if args.withdraw and args.participant is None:
+        raise ValueError('--withdraw needs --participant NUMBER')
     folder = StudyFolder(args.output or Path('out/studies') / args.plan.stem)
     plan = folder.begin(args.plan, args.participant)
     if args.participant is not None:
         if plan.people is None:
             raise ValueError(f'the participants of {args.plan} are simulated: leave --participant out')
-        return 0 if lead_through(folder, plan, plan.participant(args.participant)) else INTERRUPTED
+        participant = plan.participant(args.participant)
+        if args.withdraw:
+            withdraw(folder, plan, participant, args.withdraw)
+            did = 'deleted' if args.withdraw == 'delete' else 'kept'
+            print(f'Participant {participant.number} has withdrawn; what was recorded is {did}.')
+            return 0
+        return 0 if lead_through(folder, plan, participant, asker_of(plan.people)) else INTERRUPTED
     who = 'simulated' if plan.people is None else 'real'
     print(f'{len(plan.participants)} {who} participants x {len(plan.conditions)} conditions in {folder.path}',
           flush=True)

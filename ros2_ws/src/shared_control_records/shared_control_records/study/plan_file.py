@@ -95,6 +95,15 @@ class Learning(Section):
     """What counts of the two moments (:mod:`shared_control.control.sharing`)."""
 
 
+class Question(Section):
+    """A question to a participant."""
+
+    ask: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=1000), AfterValidator(_plain)]
+    """What is asked."""
+    choices: Annotated[list[Annotated[str, AfterValidator(_plain)]], Field(max_length=30)] = []
+    """One of these is the answer; none: any text, or nothing."""
+
+
 class People(Section):
     """What real participants do."""
 
@@ -102,10 +111,20 @@ class People(Section):
     """How many there are."""
     consent: Annotated[str, StringConstraints(strip_whitespace=True, min_length=1), AfterValidator(_plain)]
     """The text that they agree to before anything is recorded."""
-    practice_episodes: Annotated[int, Field(ge=0, le=1000)] = 2
-    """To get to know the keys; kept apart."""
+    practice_rests: Annotated[int, Field(ge=0, le=100)] = 2
+    """How often they bring the ball to rest alone, with the robot off, before they first teach."""
+    practice_minutes: Annotated[float, Field(ge=0.1, le=60.0)] = 5.0
+    """After this much practice they may teach in any case."""
     minutes: Annotated[float, Field(ge=0.1, le=1440.0)] = 45.0
     """Longest time of teaching in each condition (3.4)."""
+    teach_on: Literal['page', 'terminal'] = 'page'
+    """Where they teach, and are asked."""
+    feedback: Literal['none', 'ball', 'full'] = 'ball'
+    """What they are told while they teach, in either (:mod:`shared_control.teaching.feedback`)."""
+    before: dict[Name, Question] = {}
+    """Questions to everybody before the first session, by the name under which answers are kept."""
+    after: dict[Name, Question] = {}
+    """Questions at the end."""
     session_options: list[Annotated[str, AfterValidator(_session_option)]] = []
     """Some of ``SESSION_OPTIONS``, with their values."""
 

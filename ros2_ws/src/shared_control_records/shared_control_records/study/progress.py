@@ -1,21 +1,34 @@
 """How far a real participant has come: ``progress.json``."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 from shared_control.files import write_atomically
 from shared_control_learning.wrong_content import what_is_wrong
 
+
+class Scale(NamedTuple):
+    """One scale of the questionnaire."""
+
+    question: str
+    low: str
+    """What 0 means."""
+    high: str
+    """What 100 means."""
+
+
 SCALES = {
-    'mental': 'Mental demand: how much thinking, deciding and watching did it take?',
-    'physical': 'Physical demand: how much physical effort did it take?',
-    'temporal': 'Temporal demand: how hurried was the pace?',
-    'performance': 'Performance: how well did you do what you were asked to? (0 perfect, 100 failure)',
-    'effort': 'Effort: how hard did you have to work for that?',
-    'frustration': 'Frustration: how discouraged, irritated or stressed were you?',
+    'mental': Scale('Mental demand: how much thinking, deciding and watching did it take?', 'very low', 'very high'),
+    'physical': Scale('Physical demand: how much physical effort did it take?', 'very low', 'very high'),
+    'temporal': Scale('Temporal demand: how hurried was the pace?', 'very low', 'very high'),
+    'performance': Scale('Performance: how well did you do what you were asked to?', 'perfect', 'failure'),
+    'effort': Scale('Effort: how hard did you have to work for that?', 'very low', 'very high'),
+    'frustration': Scale(
+        'Frustration: how discouraged, irritated or stressed were you?', 'very low', 'very high'),
 }
-"""NASA-TLX (Hart and Staveland, 1988), raw: without weights, the mean of the six is the workload."""
+"""NASA-TLX (Hart and Staveland, 1988), raw: without weights, the mean of the six is the workload. From 0 to 100, in
+steps of 5 where there are steps."""
 
 
 class ProgressError(ValueError):
@@ -29,11 +42,20 @@ class Progress(BaseModel):
 
     consented: str | None = None
     """When; None: not yet."""
-    practised: bool = False
+    consent_sha256: str | None = None
+    """SHA-256 of the text that was agreed to."""
+    withdrawn: Literal['keep', 'delete'] | None = None
+    """Whether the participant has withdrawn, and what then was done with what had been recorded."""
+    practice: dict[str, Any] | None = None
+    """What the practice before the first session came to (``practice.json``)."""
     taught: list[str] = []
     """Conditions whose session came to its end."""
     tlx: dict[str, dict[str, Annotated[float, Field(ge=0.0, le=100.0)]]] = {}
     """By condition and scale, 0..100."""
+    before: dict[str, str] = {}
+    """Answers to the plan's questions before the first session."""
+    after: dict[str, str] = {}
+    """Answers at the end."""
     _path: Path = PrivateAttr()
 
     @classmethod
@@ -52,6 +74,11 @@ class Progress(BaseModel):
             raise ProgressError(f'{path} is damaged: {what_is_wrong(error)}') from error
         progress._path = path
         return progress
+
+    def forget(self) -> None:
+        """Back to what it was before anything was recorded."""
+        for name, field in type(self).model_fields.items():
+            setattr(self, name, field.get_default(call_default_factory=True))
 
     def save(self) -> None:
         """Keep it."""

@@ -64,8 +64,12 @@ def _outcomes(folder: StudyFolder, names: Sequence[str], workers: int,
 
 def _possible(folder: StudyFolder, plan: Plan, job: Job) -> bool:
     """Whether a run waits for nobody."""
-    return plan.people is None or not job.condition.taught or (
-        job.condition.name in Progress.of(folder.person(job.participant)).taught)
+    if plan.people is None:
+        return True
+    progress = Progress.of(folder.person(job.participant))
+    if progress.withdrawn == 'delete':
+        return False  # nor is a run of theirs that needs nobody: it has no partner
+    return not job.condition.taught or job.condition.name in progress.taught
 
 
 def _seconds(folder: StudyFolder, job: Job) -> float:

@@ -43,6 +43,7 @@ class Observer:
         self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
         self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
         self._success = Polled(node, contract.SUCCESS, qos_profile=latest)
+        self._rests_left = Polled(node, contract.RESTS_LEFT, qos_profile=latest)
         self._waiting = Polled(node, contract.WAITING, qos_profile=latest)
         self._returns = Polled(node, contract.EPISODE_RETURN, qos_profile=contract.qos_latched())
         self._verdicts = Polled(node, contract.VERDICT, qos_profile=contract.qos_latched())
@@ -73,6 +74,8 @@ class Observer:
         self._read_time_left(scene)
         scene.human_share = self._latest(self._share, scene.human_share)
         scene.success = self._latest(self._success, scene.success)
+        if (rests := self._rests_left.take()) is not None:
+            scene.rests_left = max(rests.data, 0)
         if (waiting := self._waiting.take()) is not None:
             scene.waiting = waiting.data
         while (message := self._returns.take()) is not None:

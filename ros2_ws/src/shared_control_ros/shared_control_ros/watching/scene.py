@@ -57,6 +57,8 @@ class Scene:
     episode: int | None = None
     time_left: float | None = None
     """What is left of the episode, s."""
+    rests_left: int = 0
+    """How often the ball still has to be brought to rest before the practice may end."""
     next_in: float | None = None
     """Until the next episode begins, s."""
     outcome: Outcome | None = None
@@ -71,6 +73,8 @@ class Scene:
     """What a person has said of it."""
     success: float | None = None
     """Share of the last test that succeeded, 0..1."""
+    feedback: str = 'full'
+    """What the person is told: one of :data:`shared_control.teaching.feedback.FEEDBACK`."""
     in_session: bool = False
     """Whether a lesson is about to be given: nothing known of it means that it starts."""
     ending: bool = False

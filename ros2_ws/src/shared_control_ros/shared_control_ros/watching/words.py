@@ -22,9 +22,17 @@ PHASES = {
     'practice': Words('Practice', 'You alone move the tray: the robot is off. Get the feel of it.'),
     'teach': Words('Teach', 'The robot tries. Push when it errs; no push when it does well.'),
     'learn': Words('The robot learns', 'Your keys do not count now.'),
-    'test': Words('The robot alone', 'Hands off: your keys do not count now.'),
+    'test': Words('The robot alone', 'Hands off: see what it has learned. Your keys do not count now.'),
     'done': Words('Finished', 'The teaching is over.'),
 }
+
+
+def practice_words(rests_left: int) -> str:
+    """What is still to be done in a practice that has a criterion; otherwise, or once that is met, that it may end."""
+    if rests_left:
+        times = {1: 'once', 2: 'twice'}.get(rests_left, f'{rests_left} times')
+        return f'Alone, bring the ball to rest on the mark for 3 s, {times} more.'
+    return PHASES['practice'].doing
 
 
 def words_for(task: Task) -> dict[str, Words]:

@@ -1,6 +1,6 @@
 // The buttons of the lesson, and the keys that press some of them: p pauses, Enter begins to teach, g, b and x judge.
 
-import { askToPause, askWhetherDone, isPractice, isTooSoon } from "./panel.js";
+import { askToPause, askWhetherDone, canStart, isTooSoon } from "./panel.js";
 import { part } from "./parts.js";
 
 const VERDICTS = { g: "success", b: "failure", x: "discard" };
@@ -47,6 +47,6 @@ export function listenToButtons(send) {
     const verdict = VERDICTS[event.key.toLowerCase()];
     if (verdict) send({ do: "judge", value: verdict });
     else if (event.key.toLowerCase() === "p") pause();
-    else if (event.key === "Enter" && document.activeElement === document.body && isPractice()) send({ do: "start" });
+    else if (event.key === "Enter" && document.activeElement === document.body && canStart()) send({ do: "start" });
   });
 }

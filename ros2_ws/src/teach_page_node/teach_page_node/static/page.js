@@ -9,6 +9,7 @@ import { showCloseView } from "./close_view.js";
 import { listenToButtons } from "./buttons.js";
 import { listenToEnd, showEnd } from "./end.js";
 import { showConnection, showPicture, showRole } from "./panel.js";
+import { lookForTheNextPage, stopLooking } from "./next_page.js";
 import { isMounted } from "./parts.js";
 
 while (!isMounted()) await new Promise((resolve) => setTimeout(resolve, 50)); // NiceGUI builds the page after this is loaded
@@ -49,6 +50,8 @@ const live = connect({
   connection(isUp) {
     if (!isUp) keys?.setActive(false);
     showConnection(isUp);
+    if (isUp) stopLooking();
+    else lookForTheNextPage();
   },
 });
 

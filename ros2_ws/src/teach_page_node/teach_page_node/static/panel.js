@@ -13,6 +13,7 @@ let phaseSince = 0;
 let paused = false;
 let asked = null; // what was asked for and is not there yet: pause or go on, until when
 let asksWhetherDone = false;
+let mayStart = false;
 
 export function showPicture(picture, isReplay) {
   if (picture.phase !== phase) {
@@ -67,7 +68,7 @@ function says(picture, doing) {
     return ["trouble", isStuck(picture) ? `The robot has stopped answering (${picture.silent_for.toFixed(0)} s). Please tell the experimenter.` : "The robot stands still."];
   }
   if (!role.teaches) return ["", role.seat_is_free ? "You are watching. Nobody teaches." : "You are watching: another page teaches."];
-  return ["", picture.notice || doing];
+  return ["", picture.notice || (phase === "practice" ? window.teachPage.practice[picture.rests_left] : doing)];
 }
 
 // How the episode ended, while the robot learns and until the next one begins.
@@ -132,7 +133,8 @@ function showButtons(picture) {
   const isTaught = phase === "teach" || phase === "learn";
   const canFinish = role.teaches && isTaught;
   show("take-seat", !role.teaches && role.seat_is_free);
-  show("start", role.teaches && phase === "practice");
+  show("start", role.teaches && phase === "practice" && !picture.rests_left);
+  mayStart = phase === "practice" && role.teaches && !picture.rests_left;
   show("repeat", role.teaches && phase !== "done");
   part("repeat").disabled = picture.paused || !(phase === "teach" || phase === "test");
   show("pause", role.teaches && phase !== "done");
@@ -167,7 +169,7 @@ export function askToPause() {
   asked = { paused: !paused, until: performance.now() + ANSWER_MS };
 }
 
-export const isPractice = () => phase === "practice" && role.teaches;
+export const canStart = () => mayStart;
 
 export function showConnection(isUp) {
   document.body.classList.toggle("offline", !isUp);
