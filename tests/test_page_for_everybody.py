@@ -116,10 +116,10 @@ class TestASessionByTouch:
         tested = json.loads((session[2] / 'test.json').read_text())
         assert browser.text('end-words').endswith(f'in {tested["successes"]} of 1 tests.')
         browser.wait(lambda: browser.script('return document.documentElement.scrollWidth <= innerWidth'), 'the layout')
+        assert browser.complaints() == []
         browser.touch(part('close'))
         session[0].communicate(timeout=60)
         assert session[0].returncode == 0
-        assert browser.complaints() == []
 
 
 def test_a_replay_has_no_barriers(browser, tmp_path):

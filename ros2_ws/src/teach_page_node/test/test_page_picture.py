@@ -22,7 +22,7 @@ def refuse(constant):
 def test_what_is_not_finite_is_left_out(picture):
     message = json.loads(json.dumps(picture.message()), parse_constant=refuse)
     assert {key for key, value in message.items() if value is not None} <= {
-        'keys', 'hand', 'paused', 'notice', 'time', 'ends_teaching', 'rests_left'}
+        'keys', 'hand', 'paused', 'notice', 'time', 'ends_teaching', 'rests_left', 'verdict'}
 
 
 def test_finite_numbers_are_rounded():
