@@ -19,18 +19,28 @@ from shared_control.tasks.balance import BALANCE
 from shared_control.teaching.key_device import KeyDevice
 from shared_control_bringup import parameters
 from shared_control_bringup.settings import Settings
+from shared_control_learning.episode_table import EpisodeTable, read_rows
 from shared_control_learning.policy_file import PolicyFileError, load_policy, save_policy
 from shared_control_learning.presets import preset
 from shared_control_learning.training import TrainingError, TrainingRun, read_run
 from shared_control_records.bag import BagError, recover
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_records.bag.writer import BagWriter
+from shared_control_records.session.episodes import read_episodes
+from shared_control_records.session.final_test import load_test
 from shared_control_records.study.plan import PlanError, load_plan
+from shared_control_records.study.progress import Progress, ProgressError
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+from shared_control_ros.joints import joint_positions
+from shared_control_ros.robot_inputs import TorqueInput
+from shared_control_ros.torque_command import torque_command
 from shared_control_ros.wrenches import LARGEST, moment_of
 from shared_control_testing.sessions import STORE, lesson, record
 from teleop_key_node.keyboard import Keyboard
 from teleop_key_node.sources import Sources
 from torque_ctrl_node.joint_states import JointStateReader
+from torque_ctrl_node.stop_record import StopRecord
 
 QUICK = settings(max_examples=150, deadline=None, derandomize=True, database=None,
                  suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -40,6 +50,7 @@ SCALARS = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_
 JSON = st.recursive(SCALARS, lambda inner: (
     st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=12), inner, max_size=4)), max_leaves=12)
 INT32 = st.integers(-2**31, 2**31 - 1)
+DEEP = 20_000 * '['
 
 
 def changed(content, data):
@@ -143,6 +154,52 @@ def test_joint_states(data):
     assert all(value.shape == (spec.dof,) and np.isfinite(value).all() for value in values)
 
 
+@QUICK
+@given(st.data())
+def test_positions_of_joints(data):
+    spec = panda()
+    names = data.draw(st.lists(st.sampled_from([*spec.joints, '', 'x']), max_size=12))
+    message = JointState(name=names, position=data.draw(st.lists(st.floats(), max_size=12)))
+    with suppress(ValueError):
+        assert np.isfinite(joint_positions(message, spec)).all()
+
+
+@QUICK
+@given(st.data())
+def test_torques(torques, data):
+    """What is no command of finite torques, or answers another tick, is none."""
+    whole = serialize_message(torque_command([1.0, -2.0, 3.0, 0.0, 0.5, 0.25, 0.125], 10**18))
+    assert torques().read(whole, 10**18) is not None and torques().read(whole, 10**18 + 1) is None
+    torque = torques().read(garbled(whole, data), 10**18)
+    assert torque is None or (torque.shape == (7,) and np.isfinite(torque).all())
+
+
+@QUICK
+@given(st.data())
+def test_what_the_wire_brings_is_taken_or_dropped(wire, data):
+    """Garbled bytes on a topic are no error of the node that takes messages from it."""
+    publisher, polled = wire()
+    publisher.publish(garbled(serialize_message(WrenchStamped()), data))
+    publisher.publish(WrenchStamped())
+    polled.wait_ready(0.1)
+    while (message := polled.take()) is not None:
+        assert isinstance(message, WrenchStamped)
+
+
+@pytest.fixture(scope='class')
+def torques(observer):
+    torques = TorqueInput(observer.node, 7)
+    return lambda: torques
+
+
+@pytest.fixture(scope='class')
+def wire(observer):
+    topic = contract.AGENT_WRENCH
+    polled, publisher = Polled(observer.node, topic, depth=10), observer.publisher(topic)
+    observer.spin(publisher.get_subscription_count)
+    return lambda: (publisher, polled)
+
+
 @pytest.fixture(scope='module')
 def scratch(tmp_path_factory):
     return tmp_path_factory.mktemp('hostile')
@@ -204,6 +261,66 @@ def test_runs(scratch, data):
         assert run.skilled is None or run.skilled >= 0
 
 
+TABLE = """episode,phase,steps,seconds,return,fallen,human_share,settled_position_error,learn_seconds
+1,teach,200,4.0,-12.5,0,0.5,0.01,0.2
+1,broken off,100,2.0,-3.5,0,0.5,0.01,0
+2,teach,200,4.0,1.5,1,0.25,0.1,0.2
+"""
+
+
+@QUICK
+@given(st.data())
+def test_tables_of_episodes(scratch, data):
+    path = scratch / 'episodes.csv'
+    path.write_bytes(garbled(TABLE.encode(), data))
+    (scratch / 'unfinished.csv').write_bytes(garbled(TABLE.encode(), data))
+    with refused_by(ValueError, naming=path):
+        for row in read_episodes(path):
+            assert isinstance(row.number, int)
+    with refused_by(ValueError, naming=scratch):
+        assert EpisodeTable(path, taught=2, live=True).taught_seconds is not None
+        read_rows(path)
+
+
+FINAL_TEST = {
+    'successes': 1, 'position_error_max': 0.03, 'velocity_max': 0.02, 'sample_period': 0.1, 'policy': '', 'episodes': [
+        {'success': True, 'kept': True, 'position_error': 0.01, 'velocity': 0.01, 'ball_start': 0.1, 'track': [0.1]}]}
+
+
+@QUICK
+@given(st.data())
+def test_results_of_tests(scratch, data):
+    path = scratch / 'test.json'
+    path.write_text(data.draw(st.sampled_from([DEEP, json.dumps(changed(FINAL_TEST, data))])))
+    with refused_by(ValueError, naming=path):
+        test = load_test(path)
+        assert 0 <= test.successes <= len(test.episodes)
+
+
+@QUICK
+@given(st.data())
+def test_progress_of_people(scratch, data):
+    whole = {'consented': None, 'practised': True, 'taught': ['a'], 'tlx': {'a': {'mental': 50.0}}}
+    (scratch / 'progress.json').write_text(data.draw(st.sampled_from([DEEP, json.dumps(changed(whole, data))])))
+    with refused_by(ProgressError, naming='progress.json'):
+        Progress.of(scratch)
+
+
+@QUICK
+@given(st.data())
+def test_a_record_of_a_stop_that_is_damaged_is_one(tmp_path_factory, data):
+    with pytest.MonkeyPatch.context() as patch:
+        home = tmp_path_factory.mktemp('home')
+        patch.setenv('ROS_HOME', str(home))
+        record = StopRecord(42, '/hostile')
+        record.keep()
+        kept, = home.rglob('*.json')
+        kept.write_bytes(garbled(kept.read_bytes(), data) if data.draw(st.booleans()) else DEEP.encode())
+        assert isinstance(StopRecord(42, '/hostile').is_on(), bool)
+        kept.write_bytes(DEEP.encode())
+        assert StopRecord(42, '/hostile').is_on()
+
+
 @pytest.fixture(scope='module')
 def policy(scratch):
     path = scratch / 'whole.safetensors'
@@ -215,11 +332,13 @@ def policy(scratch):
 @given(st.data())
 def test_policies(scratch, policy, data):
     path = scratch / 'policy.safetensors'
+    how = data.draw(st.integers(0, 3))
     size = int.from_bytes(policy[:8], 'little')
-    if data.draw(st.booleans()):
+    if how < 2:
         header = json.loads(policy[8:8 + size])
         name, = header['__metadata__']
-        header['__metadata__'][name] = json.dumps(changed(json.loads(header['__metadata__'][name]), data))
+        header['__metadata__'][name] = DEEP if how else json.dumps(
+            changed(json.loads(header['__metadata__'][name]), data))
         text = json.dumps(header).encode()
         path.write_bytes(len(text).to_bytes(8, 'little') + text + policy[8 + size:])
     else:

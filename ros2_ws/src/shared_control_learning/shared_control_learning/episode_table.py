@@ -47,6 +47,8 @@ class EpisodeTable:
         self._has_header = bool(rows)
         self._last: tuple[Episode, int, int] | None = None
         """The episode appended last, and where in the file its row begins and ends."""
+        if any('seconds' not in row for row in rows):
+            raise ValueError(f'{path} is no table of episodes: it has no column seconds')
         self.taught_seconds = sum(float(row['seconds']) + float(row.get('learn_seconds', 0.0)) for row in rows)
         """How long the learner was taught before, s: its episodes by the robot's time, and the time of learning."""
         write_atomically(path, (_csv([list(rows[0])]) + _csv([list(row.values()) for row in rows])).encode()

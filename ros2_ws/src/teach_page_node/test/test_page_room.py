@@ -89,3 +89,11 @@ def test_what_makes_no_sense_is_dropped(client, desk, text, caplog):
         page.send_json({'keys': [0, 0, 0]})
     assert desk.notes == [[0, 0, 0], 'let go']
     assert 'dropped a message' in caplog.text
+
+
+def test_what_is_nested_without_end_ends_nothing(client, desk):
+    with client.websocket_connect('/live') as page:
+        assert role(page)['teaches']
+        page.send_text(20_000 * '[')
+        page.send_json({'do': 'pause'})
+    assert ('pause', None) in desk.notes
