@@ -28,7 +28,10 @@ TIMELINE = 'time'
 PICTURE_NS = 20_000_000
 """The arm is logged as often, which is every frame of a screen."""
 METRES_PER_NM = 0.02
-COLOURS = {'human': (53, 132, 228), 'agent': (230, 97, 0), 'applied': (38, 162, 105)}
+COLOURS = {'human': (213, 94, 0), 'agent': (0, 114, 178), 'applied': (150, 157, 164)}
+"""Human orange and agent blue, as on the page and in figures."""
+EYE, LOOKED_AT = (1.6, 1.2, 1.3), (0.3, 0.0, 0.7)
+"""Where the scene is seen from at first, and what is looked at, base frame, m."""
 
 
 def log_bag(bag: Bag, recording: rr.RecordingStream) -> None:
@@ -65,11 +68,13 @@ def blueprint(bag: Bag) -> rrb.Blueprint:
     return rrb.Blueprint(
         rrb.Vertical(
             rrb.Horizontal(
-                rrb.Spatial3DView(origin='world', name=bag.task.name),
+                rrb.Spatial3DView(origin='world', name=bag.task.name, eye_controls=rrb.EyeControls3D(
+                    position=EYE, look_target=LOOKED_AT, eye_up=(0.0, 0.0, 1.0))),
                 rrb.Vertical(*charts, rrb.TimeSeriesView(origin='ball', name='position error (m)'),
                              rrb.TimeSeriesView(origin='training', name='training'))),
             rrb.TextLogView(origin='log', name='phases, keys, verdicts'), row_shares=[4, 1]),
-        rrb.TimePanel(timeline=TIMELINE))
+        rrb.TimePanel(timeline=TIMELINE, state='collapsed'), rrb.BlueprintPanel(state='collapsed'),
+        rrb.SelectionPanel(state='collapsed'))
 
 
 def _moments(bag: Bag) -> dict[str, Wrenches]:
