@@ -144,6 +144,13 @@ def test_no_docstring_begins_with_of():
     assert not [path for path in sources if re.search(r'^\s*"""Of ', path.read_text(), re.MULTILINE)]
 
 
+def test_every_source_has_the_header_that_ament_copyright_asks_for():
+    headers = {path: path.read_text()[:200] for package in PACKAGES for path in package.rglob('*.py')
+               if path.name != 'setup.py' and path.read_text()}
+    assert not [path for path, header in headers.items()
+                if not re.match(r'(#!.*\n\n?)?# Copyright 20\d\d .+\n#\n# Licensed under the Apache License', header)]
+
+
 def test_package_xml_is_as_the_build_tools_want_it(package):
     warnings = []
     parse_package(package, warnings=warnings).validate(warnings=warnings)
