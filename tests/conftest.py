@@ -18,12 +18,18 @@ class TerminalSession(Session, Terminal):
     def __init__(self, arguments: list[str]):
         Terminal.__init__(self)
         Session.__init__(self, arguments, **self.popen_options())
+        self._typed_at = 0
         self.watch()
 
+    def type(self, keys: bytes) -> None:
+        """Press keys."""
+        self._typed_at = len(self.shown)
+        Terminal.type(self, keys)
+
     def expect(self, text: str, timeout: float = 120.0) -> None:
-        """Wait until ``text`` is shown from now on."""
-        seen, deadline = len(self.shown), time.monotonic() + timeout
-        while text not in self.shown[seen:]:
+        """Wait until ``text`` has been shown since the last keys; what stays on the screen is drawn once only."""
+        deadline = time.monotonic() + timeout
+        while text not in self.shown[self._typed_at:]:
             assert time.monotonic() < deadline, f'{text!r} is not on the screen; last: {self.shown[-2000:]!r}'
             assert self.process.poll() is None, f'the session ended: {self.shown[-2000:]}'
             time.sleep(0.02)

@@ -15,7 +15,6 @@
 """What ``shared-control session`` checks, writes and removes before and beside the graph, which is left out here."""
 
 import json
-import os
 
 import pytest
 import yaml
@@ -23,6 +22,7 @@ from shared_control.cli import main
 from shared_control_bringup import session as command
 from shared_control_bringup.parameters import DEFAULTS, load
 from shared_control_bringup.teaching import End
+from shared_control_records.session.final_test import sha256
 from shared_control_records.session.folder import SessionFolder
 
 
@@ -212,12 +212,11 @@ def test_a_session_that_is_taught_goes_on_with_its_test_alone(session, tmp_path,
 def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):
     folder = SessionFolder(tmp_path / 'session')
     assert session('--tutor', 'sim', '--output', folder.path) == 0
-    folder.policy.write_bytes(b'')
-    folder.test.write_text('{}')
+    folder.policy.write_bytes(b'as it was tested')
+    folder.test.write_text(json.dumps({'policy': sha256(folder.policy)}))
     assert session('--resume', folder.path) == 0
     assert folder.test.exists(), 'nothing was learned since'
-    later = folder.test.stat().st_mtime_ns + 1_000_000_000
-    os.utime(folder.policy, ns=(later, later))
+    folder.policy.write_bytes(b'as it has learned since')
     assert session('--resume', folder.path) == 0
     assert not folder.test.exists()
 

@@ -118,7 +118,7 @@ def read_description(path: Path) -> dict[str, Any]:
         found = description['format']
     except KeyError as error:
         raise PolicyFileError(f'{path} is no policy: its header has no {error}') from error
-    except (SafetensorError, OSError, ValueError, TypeError) as error:
+    except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
         raise PolicyFileError(f'{path} is no policy: {error}') from error
     if found != FORMAT:
         raise PolicyFileError(f'{path} is no policy of this version: format {found!r}, expected {FORMAT!r}')

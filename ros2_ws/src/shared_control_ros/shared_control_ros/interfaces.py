@@ -74,14 +74,14 @@ INTERFACES = {
         subscribes=(contract.BALL, contract.JOINT_STATES_THROTTLE, contract.HUMAN_WRENCH, contract.EPISODE,
                     contract.PHASE)),
     'teach_page_node': Interface(
-        publishes=(contract.KEYS, contract.HUMAN_VERDICT),
+        publishes=(contract.KEYS, contract.HUMAN_VERDICT, contract.DIAGNOSTICS),
         subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING),
         calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), subscribes=contract.BAG_TOPICS),
     'robot_view_node': Interface(
         publishes=('robot_description', 'markers', '/tf', contract.DIAGNOSTICS), subscribes=DISPLAYED),
     'session': Interface(
-        publishes=(contract.WAITING,),
+        publishes=(contract.WAITING, contract.DIAGNOSTICS),
         subscribes=(contract.PHASE, contract.EPISODE_RETURN, contract.DIAGNOSTICS)),
     'operator': Interface(
         publishes=(contract.EMERGENCY_STOP, contract.DISTURBANCE, contract.HUMAN_VERDICT),

@@ -52,7 +52,7 @@ def recorded_task(bag: Path) -> Task | None:
         text = session_record(bag).get(SETTINGS, '{}') if bag.exists() else '{}'
     try:
         name = json.loads(text).get('task')
-    except (ValueError, AttributeError):
+    except (ValueError, AttributeError, RecursionError):
         name = None
     return load(TASKS, name)() if isinstance(name, str) and name else None
 

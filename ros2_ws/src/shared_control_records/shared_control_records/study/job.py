@@ -98,5 +98,5 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
 
 def table(path: Path) -> list[dict[str, Any]]:
     """Taught episodes of an ``episodes.csv``, numbers as numbers."""
-    return [{key: value if key == 'phase' else float(value) for key, value in row.items()}
+    return [{key: value if key in ('phase', 'verdict') else float(value) for key, value in row.items()}
             for row in read_rows(path) if row['phase'] == 'teach']
