@@ -96,7 +96,7 @@ def tell(change: str, results: list[dict[str, Any]]) -> None:
     known = sorted(float('inf') if n is None else n for n in again)
     print(f'{change}: {sum(r["success"] >= 0.95 for r in results)} of {len(results)} pass, median |error| '
           f'{1e3 * np.median([r["error"] for r in results]):.1f} mm'
-          + (f'; the {len(known)} others are skilled again after {np.median(known):g} episodes (slowest {known[-1]:g})'
+          + (f'; taught again: {len(known)}, skilled after {np.median(known):g} episodes (slowest {known[-1]:g})'
              if known else ''), flush=True)
 
 
