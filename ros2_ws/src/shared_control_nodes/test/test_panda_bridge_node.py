@@ -143,6 +143,7 @@ def test_a_loop_that_stands_still_while_the_arm_is_under_control_ends_it(start_n
     commands = observer.publisher(contract.EFFORT_COMMANDS)
     assert observer.call(SetBool, 'robot/enable', SetBool.Request(data=True), beside=lambda: commands.publish(
         Float64MultiArray(data=[0.0] * 7))).success
+    observer.spin_for(0.3)  # its loop has come round since, and commands are not missed yet
     node.process.send_signal(signal.SIGSTOP)
     observer.spin_for(3.0)  # twice command_timeout, and more
     node.process.send_signal(signal.SIGCONT)
