@@ -9,7 +9,7 @@ from selenium.webdriver.support.expected_conditions import alert_is_present
 from selenium.webdriver.support.wait import WebDriverWait
 from shared_control import contract as table
 from shared_control_ros import contract
-from shared_control_testing.page import SIZES, Browser, serve
+from shared_control_testing.page import SIZES, Browser, serve, served
 from shared_control_testing.sessions import MS, START_NS, lesson, message, record
 
 pytestmark = pytest.mark.alone
@@ -24,11 +24,8 @@ SMOOTHS = 'return getElement(teachPage.scene).renderer.getContext().getContextAt
 def session(domain_id, tmp_path_factory):
     """``shared-control session --tutor page``, practising; its process and the page's address."""
     folder = tmp_path_factory.mktemp('session') / 'session'
-    process, address = serve('session', '--tutor', 'page', '--test-episodes', '0', '--output', str(folder))
-    yield process, address
-    if process.poll() is None:
-        process.send_signal(signal.SIGTERM)
-    process.communicate(timeout=60)
+    with served('session', '--tutor', 'page', '--test-episodes', '0', '--output', str(folder)) as session:
+        yield session
 
 
 @pytest.fixture(scope='class')
@@ -216,11 +213,8 @@ class TestASessionByTheKeyboardAlone:
     @staticmethod
     def session(domain_id, tmp_path_factory):
         folder = tmp_path_factory.mktemp('session') / 'session'
-        process, address = serve('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder))
-        yield process, address, folder
-        if process.poll() is None:
-            process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
+        with served('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder)) as session:
+            yield *session, folder
 
     @staticmethod
     def tab_to(browser, name):

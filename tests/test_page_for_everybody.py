@@ -9,7 +9,7 @@ import pytest
 from shared_control_records.study.form_page import FormPage
 from shared_control_records.study.plan_file import Question
 from shared_control_records.study.progress import SCALES
-from shared_control_testing.page import Browser, serve
+from shared_control_testing.page import Browser, serve, served
 from shared_control_testing.sessions import lesson, record
 from teach_page_node import layout
 from teach_page_node.address import free_port
@@ -24,11 +24,8 @@ ENLARGED = (683, 384)
 @pytest.fixture(scope='class')
 def session(domain_id, tmp_path_factory):
     folder = tmp_path_factory.mktemp('session') / 'session'
-    process, address = serve('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder))
-    yield process, address, folder
-    if process.poll() is None:
-        process.send_signal(signal.SIGTERM)
-    process.communicate(timeout=60)
+    with served('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder)) as session:
+        yield *session, folder
 
 
 @pytest.fixture(scope='module')

@@ -2,12 +2,11 @@
 
 import itertools
 import re
-import signal
 
 import pytest
 from selenium.webdriver.common.keys import Keys
 from shared_control_ros import contract
-from shared_control_testing.page import Browser, serve
+from shared_control_testing.page import Browser, served
 
 pytestmark = pytest.mark.alone
 
@@ -19,11 +18,9 @@ ROLLED = 30
 def address(domain_id, tmp_path_factory):
     """``shared-control session --task detour --tutor page``, practising."""
     folder = tmp_path_factory.mktemp('session') / 'session'
-    process, address = serve('session', '--task', 'detour', '--tutor', 'page', '--test-episodes', '0', '--output',
-                             str(folder))
-    yield address
-    process.send_signal(signal.SIGTERM)
-    process.communicate(timeout=120)
+    with served('session', '--task', 'detour', '--tutor', 'page', '--test-episodes', '0', '--output',
+                str(folder)) as (_, address):
+        yield address
 
 
 @pytest.fixture(scope='class')

@@ -155,8 +155,9 @@ def fit_dynamics(known: Transitions, periods: int) -> Dynamics:
     changes = known.next - states[:, :n]
     width = states.shape[1]
     a, b, c = np.eye(width), np.zeros((width, moments.shape[1])), np.zeros(width)
+    moving = known.moving
     for entry in range(n):
-        solution = _robust(inputs, changes[:, entry], known.moving)
+        solution = _robust(inputs, changes[:, entry], moving)
         a[entry] += solution[:width]
         a[n + entry] = solution[:width]
         b[entry] = b[n + entry] = solution[width:-1]

@@ -16,11 +16,13 @@
 
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.resources import files
 from typing import Any
 
@@ -61,6 +63,18 @@ def serve(*arguments: str) -> tuple[subprocess.Popen[str], str]:
         assert line, f'{arguments[0]} ended: {said}'
         said += line
     return process, found[1]
+
+
+@contextmanager
+def served(*arguments: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """The same for as long as it is needed; the process is ended then, if it has not ended by itself."""
+    process, address = serve(*arguments)
+    try:
+        yield process, address
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=120)
 
 
 class Browser:

@@ -27,6 +27,7 @@ from shared_control_learning.evaluation.statistics import curve
 from ..plotting.plot import Plot
 from ..plotting.style import AGENT, FAINT, GOOD, HUMAN
 from ..study_report.statistics import ENOUGH
+from .tables import slug
 
 NUMBERS = {'randomized': (16, 17), 'perturbation': (18, 19), 'trajectory 0.25 Hz': (22, 22),
            'trajectory 0.5 Hz': (23, 23), 'trajectory 1 Hz': (24, 24)}
@@ -42,17 +43,17 @@ def plots(results: Sequence[ProtocolResult]) -> Iterator[Plot]:
         results: of the test, one a policy.
     """
     test = results[0].test
-    slug = test.replace(' ', '_').lower()
+    stem = slug(test)
     position, velocity = NUMBERS[test]
     if position == velocity:
-        yield Plot(f'fig{position}_{slug}', partial(_draw_both, results),
+        yield Plot(f'fig{position}_{stem}', partial(_draw_both, results),
                    _caption(results, 'Position error (top) and velocity error (bottom)'), SIZE)
     else:
         for number, track, what in ((position, 'position_error', 'Position error'),
                                     (velocity, 'velocity_error', 'Velocity error')):
-            yield Plot(f'fig{number}_{slug}_{track}', partial(_draw_error, results, track), _caption(
+            yield Plot(f'fig{number}_{stem}_{track}', partial(_draw_error, results, track), _caption(
                 results, f'{what} (top) and its magnitude (bottom), since errors of both signs cancel in a mean'), SIZE)
-    yield Plot(f'{slug}_manipulability', partial(_draw_manipulability, results), _caption(
+    yield Plot(f'{stem}_manipulability', partial(_draw_manipulability, results), _caption(
         results, 'Manipulability of Yoshikawa, k_w (equation 34), and 1 - k_w^2 as the appendix of the thesis has it; '
                  'both without unit'), SIZE)
 
