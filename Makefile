@@ -9,7 +9,7 @@ RUNS := 50
 CHECK_SCHEMA := $(BIN)/check-jsonschema --quiet --builtin-schema
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test coverage lint lint-github docs wheel bench faults soak freeze flaky pictures weight \
+.PHONY: help setup demo session test coverage lint lint-github docs links wheel bench faults soak freeze flaky pictures weight \
     count colcon clean
 
 help:
@@ -18,6 +18,7 @@ help:
 	@echo 'make test     all tests'
 	@echo 'make coverage all tests, and which lines they ran; ARGS=PATH for a part of them'
 	@echo 'make docs     the documentation as a site (out/docs/index.html)'
+	@echo 'make links    whether the pages of others that ours link to are there (out/links/output.txt)'
 	@echo 'make wheel    sdist and wheel (dist/), each installed and tried in an empty environment'
 	@echo 'make lint     ruff, mypy, who may import whom, the linters of ROS, workflows and templates'
 	@echo 'make bench    measurements (out/bench.json)'
@@ -63,6 +64,12 @@ coverage: setup
 docs: setup
 	$(BIN)/python -m sphinx -b html --fail-on-warning --keep-going --quiet -d out/doctrees docs out/docs
 	@echo 'out/docs/index.html'
+
+links: setup
+	$(BIN)/python -m sphinx -b linkcheck -C -D extensions=myst_parser -D root_doc=README -D suppress_warnings=myst,toc,misc \
+	    -D include_patterns='*.md,docs/*.md,docs/*/*.md,examples/*/*.md,ros2_ws/src/*/README.md' \
+	    --keep-going --quiet -d out/doctrees-links . out/links
+	@echo 'out/links/output.txt'
 
 wheel: setup
 	$(BIN)/python tools/wheel.py --output dist

@@ -9,6 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+import yaml
 from catkin_pkg.package import parse_package
 
 ROOT = Path(__file__).parents[1]
@@ -81,6 +82,13 @@ def test_package_xml_and_setup_py_say_the_same(package):
     assert root.findtext('maintainer') == setup['maintainer']
     assert root.findtext('test_depend') == 'python3-pytest'
     assert 'pytest' in setup['extras_require']['test'] and 'tests_require' not in setup  # which breaks colcon test
+
+
+def test_one_version_everywhere():
+    version = tomllib.loads((ROOT / 'pyproject.toml').read_text())['project']['version']
+    assert {setup_arguments(package)['version'] for package in PACKAGES} == {version}
+    assert yaml.safe_load((ROOT / 'CITATION.cff').read_text())['version'] == version
+    assert f'\n## {version} (' in (ROOT / 'CHANGELOG.md').read_text()
 
 
 def test_ros2_run_finds_the_package_and_its_executable(package):

@@ -146,8 +146,8 @@ class GraphPlant:
                     newest = ball
             if time.monotonic() - silent_since > 1.0:
                 self._node.get_logger().info(
-                    f'{self._balls.topic_name} has been silent for {time.monotonic() - silent_since:.0f} s: paused, or '
-                    'waiting for the controller', throttle_duration_sec=5.0)
+                    f'{self._balls.topic_name} has been silent for {time.monotonic() - silent_since:.0f} s: paused, '
+                    'waiting for the controller, or out of reach', throttle_duration_sec=5.0)
         return newest
 
     def _check_sender(self, number: int) -> None:

@@ -15,7 +15,7 @@
 """``bags/rosetta_contract.yaml`` is what Rosetta asks for, and names what our graph publishes.
 
 The schema is that of Rosetta's ``contract/schema.py`` and ``model.py`` at its commit dfd07e4 (August 2026), as far as
-the file uses it; Rosetta's own loader takes the file as well (docs/how_to/study.md).
+the file uses it; Rosetta's own loader takes the file as well (docs/how_to/bags.md).
 """
 
 import importlib
