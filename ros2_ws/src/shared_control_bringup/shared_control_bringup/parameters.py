@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from shared_control.files import write_atomically
 
 from .graph import ALL_NODES
 
@@ -51,7 +52,7 @@ def lay_over(parameters: dict[str, dict[str, Any]], values: dict[str, dict[str, 
 def save(parameters: dict[str, dict[str, Any]], path: Path) -> None:
     """Write a ROS parameter file."""
     content = {node: {'ros__parameters': values} for node, values in parameters.items()}
-    path.write_text(yaml.safe_dump(content, sort_keys=False))
+    write_atomically(path, yaml.safe_dump(content, sort_keys=False).encode())
 
 
 def _read(path: Path) -> dict[str, dict[str, Any]]:

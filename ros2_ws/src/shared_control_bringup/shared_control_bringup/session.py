@@ -22,6 +22,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from shared_control.files import write_atomically
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata
@@ -73,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     with Interrupts() as interrupts:
         if earlier is None:
             folder = SessionFolder.create(path, hasattr(args, 'overwrite'), settings.to_json())
-            folder.given_parameters.write_bytes(given_parameters)
+            write_atomically(folder.given_parameters, given_parameters)
         else:
             folder = earlier
             folder.claim()
