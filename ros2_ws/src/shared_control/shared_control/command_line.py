@@ -23,7 +23,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TextIO
 
-from .files import write_atomically
+from .files import refuse_another_file, write_atomically
 
 EXAMPLES = 'Examples:'
 TO_THE_OUTPUT = Path('-')
@@ -79,8 +79,19 @@ def add_json_option(parser: argparse.ArgumentParser, what: str) -> None:
     Args:
         what: it holds, as in ``all figures``.
     """
-    parser.add_argument('--json', type=Path, metavar='FILE',
+    parser.add_argument('--json', type=_json_file, metavar='FILE',
                         help=f'write {what} to this file; - for standard output (default: not written)')
+
+
+def _json_file(name: str) -> Path:
+    """Where JSON may be written; checked before the work begins."""
+    path = Path(name)
+    if path != TO_THE_OUTPUT:
+        try:
+            refuse_another_file(path, 'JSON file', b'{')
+        except OSError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
+    return path
 
 
 def prose(json_path: Path | None) -> TextIO:

@@ -52,6 +52,28 @@ def write_atomically(path: Path, content: bytes, synced: bool = True) -> None:
         raise
 
 
+def refuse_another_file(path: Path, kind: str, beginning: bytes) -> None:
+    """Refuse to write ``path`` over a file that is not of the kind that is to be written.
+
+    Args:
+        path: where something is to be written; nothing need be there.
+        kind: what is written, for the message: ``Parquet file``.
+        beginning: the bytes that all such files begin with.
+
+    Raises:
+        FileExistsError: there is something else, and it is not empty; the message names it.
+        OSError: it cannot be read.
+    """
+    if not path.exists() or path.is_char_device():
+        return
+    is_own = path.is_file()
+    if is_own:
+        with path.open('rb') as file:
+            is_own = file.read(len(beginning)) in (beginning, b'')
+    if not is_own:
+        raise FileExistsError(f'{path} exists already and is no {kind}: name another file')
+
+
 def lock(file: IO[bytes]) -> bool:
     """Claim an open file for this process until it is closed or the process ends, however it ends.
 

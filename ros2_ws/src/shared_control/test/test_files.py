@@ -14,13 +14,16 @@
 
 """Files on file systems that lack something, and output that nobody reads any more."""
 
+import argparse
 import errno
 import fcntl
+import json
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from shared_control.command_line import add_json_option, write_json
 from shared_control.files import lock, write_atomically
 
 LATE = """
@@ -43,6 +46,22 @@ def test_a_file_is_written_where_modes_cannot_be_set(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, 'chmod', no_modes)
     write_atomically(tmp_path / 'file', b'content')
     assert (tmp_path / 'file').read_bytes() == b'content' and len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.parametrize('there', [None, b'', b'{"protocol": "randomized"}', b'notes of somebody'])
+def test_json_is_written_over_nothing_but_json(tmp_path, capsys, there):
+    path = tmp_path / 'file'
+    if there is not None:
+        path.write_bytes(there)
+    parser = argparse.ArgumentParser()
+    add_json_option(parser, 'figures')
+    if there != b'notes of somebody':
+        write_json({'figure': 1}, parser.parse_args(['--json', str(path)]).json)
+        assert json.loads(path.read_text()) == {'figure': 1}
+        return
+    with pytest.raises(SystemExit):
+        parser.parse_args(['--json', str(path)])
+    assert f'{path} exists already and is no JSON file' in capsys.readouterr().err and path.read_bytes() == there
 
 
 @pytest.mark.parametrize('number', [errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP])

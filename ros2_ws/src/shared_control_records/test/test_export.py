@@ -170,7 +170,7 @@ def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
         assert len(stats[name]['mean']) == width and stats[name]['count'] == [sum(STEPS)]
 
 
-def test_the_command_says_where_and_never_overwrites_a_data_set(bag, tmp_path, monkeypatch, capsys):
+def test_the_command_says_where_and_never_overwrites_what_is_not_its_own(bag, tmp_path, monkeypatch, capsys):
     def run(*arguments):
         monkeypatch.setattr('sys.argv', ['shared-control', 'export', *map(str, arguments)])
         return main()
@@ -181,6 +181,11 @@ def test_the_command_says_where_and_never_overwrites_a_data_set(bag, tmp_path, m
     for code, said in ((0, 'frames'), (2, 'exists already')):
         assert run(bag, '--format', 'lerobot', '--output', tmp_path / 'set') == code
         assert said in ''.join(capsys.readouterr())
+    notes = tmp_path / 'notes.txt'
+    notes.write_text('of somebody')
+    assert run(bag, '--output', notes) == 2 and notes.read_text() == 'of somebody'
+    assert f'{notes} exists already and is no Parquet file' in capsys.readouterr().err
+    assert run(mcap, '--output', tmp_path / 'one.parquet') == 0, 'it may be made anew'
     assert run(bag, mcap, '--format', 'lerobot', '--output', tmp_path / 'two') == 0
     assert '260 frames of 4 episodes' in capsys.readouterr().out
     two = pd.read_parquet(tmp_path / 'two/meta/episodes/chunk-000/file-000.parquet')

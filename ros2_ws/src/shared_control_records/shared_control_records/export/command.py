@@ -18,6 +18,7 @@ import argparse
 from pathlib import Path
 
 from shared_control.command_line import add_parser
+from shared_control.files import refuse_another_file
 from shared_control.plugins import TASKS, load, names
 
 FORMATS = ('parquet', 'lerobot')
@@ -46,10 +47,12 @@ def run(args: argparse.Namespace) -> int:
     from ..bag.reader import read_bag
     from .frames import episode_frames
     from .lerobot import write_lerobot
-    from .parquet import write_parquet
+    from .parquet import MAGIC, write_parquet
     suffix = '.parquet' if args.format == 'parquet' else '_lerobot'
     bags = [find_bag(path) for path in args.sessions]
     output = args.output or bags[0].absolute().with_name(bags[0].stem + suffix)
+    if args.format == 'parquet':
+        refuse_another_file(output, 'Parquet file', MAGIC)
     task = load(TASKS, args.task)() if args.task else None
     episodes = [frames for bag in bags for frames in episode_frames(read_bag(bag, task))]
     if args.format == 'parquet':

@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from shared_control.files import write_atomically
 from shared_control.wrench import AXIS_NAMES
 
 from .frames import EpisodeFrames
@@ -26,12 +27,15 @@ from .frames import EpisodeFrames
 UNITS = {'seconds': 's', 'stamp_ns': 'ns', 'q': 'rad', 'qd': 'rad/s', 'ball': 'm', 'ball_v': 'm/s',
          'position_error': 'm', 'pitch': 'rad', 'on_tray': 'm', **dict.fromkeys(AXIS_NAMES[3:], 'N m')}
 """By the beginning of a column's name; the longest that fits counts."""
+MAGIC = b'PAR1'
+"""What every Parquet file begins with."""
 
 
 def write_parquet(episodes: list[EpisodeFrames], path: Path) -> None:
     """Write the episodes to ``path``. Each column carries its unit in the metadata of its field."""
-    table = pa.concat_tables([_table(episode) for episode in episodes])
-    pq.write_table(table, path)
+    content = pa.BufferOutputStream()
+    pq.write_table(pa.concat_tables([_table(episode) for episode in episodes]), content)
+    write_atomically(path, content.getvalue())
 
 
 def _table(episode: EpisodeFrames) -> pa.Table:

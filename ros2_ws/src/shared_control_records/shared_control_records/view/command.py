@@ -18,6 +18,7 @@ import argparse
 from pathlib import Path
 
 from shared_control.command_line import add_parser
+from shared_control.files import refuse_another_file
 
 
 def add_command(commands: argparse._SubParsersAction) -> None:
@@ -42,6 +43,8 @@ def run(args: argparse.Namespace) -> int:
     from ..bag.files import find_bag
     from ..bag.reader import read_bag
     from .recording import blueprint, log_bag
+    if args.output is not None:
+        refuse_another_file(args.output, 'recording of Rerun', b'RRF')
     path = find_bag(args.session)
     bag = read_bag(path)
     recording = rr.RecordingStream('shared_control', recording_id=str(path.absolute()))
