@@ -76,7 +76,10 @@ ANSWER_DIGITS = 19
 """How many digits that stamp has, zeros in front; enough until the year 2286."""
 KEYS = Topic(
     'human/keys', 'sensor_msgs/msg/Joy', 50, 'any source of keys', 'teleop', 'on event, 10 Hz or more',
-    'buttons = left, right, space')
+    'buttons = left, right, space, up, down; axes of a stick = left, up')
+JOY = Topic(
+    'joy', 'sensor_msgs/msg/Joy', 50, 'joy_node, spacenav, ...', 'teleop', '10 Hz or more',
+    'a gamepad or the like as its driver has it; teleop says on `/human/keys` what it means')
 HUMAN_VERDICT = Topic(
     'human/verdict', 'std_msgs/msg/String', 10, 'terminal, page, buttons of a Joy', 'agent', 'on event',
     'of the last episode that has ended: `success`, `failure`, `discard`; the same again takes it back')
@@ -142,7 +145,7 @@ WAITING = Topic(
 TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS, RESTS_LEFT)
 """Series of a number or a text."""
 TOPICS = (
-    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, HUMAN_VERDICT, HUMAN_WRENCH, AGENT_WRENCH,
+    JOINT_STATES, JOINT_STATES_THROTTLE, EFFORT_COMMANDS, KEYS, JOY, HUMAN_VERDICT, HUMAN_WRENCH, AGENT_WRENCH,
     APPLIED_WRENCH, HUMAN_APPLIED, AGENT_APPLIED, BALL, DISTURBANCE, EMERGENCY_STOP, DIAGNOSTICS, CLOCK, *TRAINING,
     VERDICT, WAITING)
 BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)

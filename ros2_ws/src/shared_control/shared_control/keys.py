@@ -25,6 +25,9 @@ KEYSTROKE = 5.0
 HUMAN_MOMENT_LIMIT = 10.0
 """Bound of the human's moment about each axis, N m."""
 
+TERMINAL, PAGE, TUTOR = OUR_SOURCES = ('terminal', 'page', 'tutor')
+"""Names of the sources of keys that are parts of the graph themselves; the tutor is simulated."""
+
 
 class Key(IntEnum):
     """The keys; the value is the button's index in ``/human/keys``. Up and down are for tasks with two axes."""

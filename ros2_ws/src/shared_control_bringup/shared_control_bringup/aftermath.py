@@ -89,6 +89,8 @@ def tell_summary(folder: SessionFolder, summary: Summary) -> None:
         print('The tutor of this session was simulated.')
     print(f'episodes taught    {summary.episodes_taught}')
     print(f'key presses        {summary.key_presses}')
+    if summary.devices:
+        print(f'device             {", ".join(summary.devices)}')
     if summary.autonomous_success is not None:
         print(f'robot alone        {summary.autonomous_success} of {summary.autonomous_episodes} randomised episodes')
     if summary.real_time_factor is not None and summary.tick_ms is not None:

@@ -20,7 +20,7 @@ from pathlib import Path
 from shared_control.command_line import add_json_option, add_parser
 from shared_control.control.sharing import WAYS
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
-from shared_control.teaching.tutors import TUTOR_NAMES
+from shared_control.teaching.tutors import HANDS, TUTOR_NAMES
 
 
 def add_train(commands: argparse._SubParsersAction) -> None:
@@ -66,10 +66,12 @@ def add_tutors(commands: argparse._SubParsersAction) -> None:
         description='Measure simulated tutors: every individual has one episode with a robot that gives no moment of '
         'its own. Families marked "tuning" may be used to choose settings; results are of those held out.',
         examples=['shared-control tutors', 'shared-control tutors expert low --individuals 24 --task plate'])
-    parser.add_argument('tutors', nargs='*', metavar='NAME', default=list(TUTOR_NAMES),
-                        help=f'profiles and families: {", ".join(TUTOR_NAMES)} (default: all)')
+    parser.add_argument('tutors', nargs='*', metavar='NAME', default=None,
+                        help=f'profiles and families: {", ".join(TUTOR_NAMES)} (default: all; families with a stick)')
     parser.add_argument('--individuals', type=int, default=12, metavar='N', help='individuals of each')
     parser.add_argument('--task', choices=names(TASKS), default='balance', help='what they do')
+    parser.add_argument('--device', choices=HANDS, default=HANDS[0],
+                        help='what they have in the hand; a stick holds any moment')
     add_json_option(parser, 'all figures')
 
 

@@ -25,10 +25,11 @@ from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, load
 from shared_control.rates import POLICY_PERIOD
 from shared_control.seeds import episode_seed
+from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task, settled
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.profiles import PROFILES
-from shared_control.teaching.tutors import make_tutor, tutor_named
+from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
 from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
 
@@ -41,32 +42,34 @@ def run(args: argparse.Namespace) -> int:
     """Measure and print; the exit code."""
     if args.individuals < 1:
         raise ValueError(f'--individuals is {args.individuals}, expected at least 1')
-    for name in args.tutors:
-        tutor_named(name)
+    tutors = args.tutors or [name for name in TUTOR_NAMES if args.device == 'keys' or name in FAMILIES]
+    for name in tutors:
+        make_tutor(tutor_named(name), BALANCE, hand=args.device)
     task = load(TASKS, args.task)()
     rows = []
-    with tqdm(total=len(args.tutors) * args.individuals, unit='episode', disable=None, file=sys.stderr) as bar:
-        for name in args.tutors:
-            rows.append(alone(name, task, args.individuals, bar))
+    with tqdm(total=len(tutors) * args.individuals, unit='episode', disable=None, file=sys.stderr) as bar:
+        for name in tutors:
+            rows.append(alone(name, task, args.individuals, args.device, bar))
     output = prose(args.json)
     print(f'{"":14} {"use":9} {"succeed":>8} {"kept":>5} {"off, mm":>8} {"rate":>5} {"presses":>8}  source',
           file=output)
     for row in rows:
+        presses = '–' if row['presses_a_minute'] is None else f'{row["presses_a_minute"]:.0f}'
         print(f'{row["tutor"]:14} {row["use"]:9} {row["success"]:>8.0%} {row["kept"]:>5.0%} '
-              f'{1e3 * row["position_error"]:>8.0f} {row["intervention_rate"]:>5.0%} {row["presses_a_minute"]:>8.0f}  '
-              f'{row["source"]}', file=output)
-    print(f'{args.individuals} individuals each, alone with an idle robot, one episode of {task.episode_seconds:g} s; '
-          'off: median |position error| over the last 3 s; rate: intervention rate; presses: changes of the moment in '
-          'a minute. Simulated.', file=output)
-    write_json({'task': task.name, 'tutors': rows}, args.json)
+              f'{1e3 * row["position_error"]:>8.0f} {row["intervention_rate"]:>5.0%} {presses:>8}  {row["source"]}',
+              file=output)
+    print(f'{args.individuals} individuals each with {"keys" if args.device == "keys" else "a stick"}, alone with an '
+          f'idle robot, one episode of {task.episode_seconds:g} s; off: median |position error| over the last 3 s; '
+          'rate: intervention rate; presses: changes of the moment in a minute. Simulated.', file=output)
+    write_json({'task': task.name, 'device': args.device, 'tutors': rows}, args.json)
     return 0
 
 
-def alone(name: str, task: Task, individuals: int, bar: tqdm) -> dict[str, Any]:
+def alone(name: str, task: Task, individuals: int, device: str, bar: tqdm) -> dict[str, Any]:
     """The row of a profile or a family."""
     episodes = []
     for seed in range(individuals):
-        person = make_tutor(tutor_named(name, seed), task, seed)
+        person = make_tutor(tutor_named(name, seed), task, seed, hand=device)
         env = SharedControlEnv(LocalPlant(task, person), task)
         episode = Episode(task)
         try:
@@ -77,13 +80,13 @@ def alone(name: str, task: Task, individuals: int, bar: tqdm) -> dict[str, Any]:
         bar.update()
     family = FAMILIES.get(name)
     return {
-        'tutor': name, 'simulated': True, 'use': family.use.value if family else 'profile',
+        'tutor': name, 'simulated': True, 'device': device, 'use': family.use.value if family else 'profile',
         'source': family.source if family else f'profile, {PROFILES[name].reaction_time:g} s late',
         'individuals': individuals, 'success': mean(episode.success for episode in episodes),
         'kept': mean(not episode.failed for episode in episodes),
         'position_error': median(settled(np.array(episode.position_error)) for episode in episodes),
         'intervention_rate': mean(episode.intervention_rate for episode in episodes),
-        'presses_a_minute': mean(map(_presses_a_minute, episodes))}
+        'presses_a_minute': mean(map(_presses_a_minute, episodes)) if device == 'keys' else None}
 
 
 def _presses_a_minute(episode: Episode) -> float:

@@ -152,6 +152,7 @@ def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
             np.stack(group.action.to_numpy()).reshape(episode.length, -1)[:, 0].mean(), abs=1e-5)
 
     assert episodes.session_episode.tolist() == [1, 2] and set(episodes.phase) == {'teach'}
+    assert set(episodes.devices) == {'keys (tutor)'}
     whole = pd.read_parquet(root / 'data/chunk-000/file-000.parquet')
     assert np.flatnonzero(whole['next.done']).tolist() == np.flatnonzero(whole['next.truncated']).tolist() == [49, 129]
     assert whole['intervention'].sum() == sum((frame.human != 0).any(axis=1).sum() for frame in frames)

@@ -132,10 +132,21 @@ def test_garbled_messages_are_unusable_and_the_others_count(recording, tmp_path)
         recording.add(topic, made.START_NS + 1000, b'\x00\x01\x00\x00\xff')
     bag = read_bag(recording.write(tmp_path / 'bag'))
     assert bag.counts == {topic: count + 1 for topic, count in whole.counts.items()}
-    not_decoded = (contract.CLOCK, contract.DISTURBANCE, contract.EMERGENCY_STOP, contract.HUMAN_VERDICT)
+    not_decoded = (contract.CLOCK, contract.DISTURBANCE, contract.EMERGENCY_STOP, contract.HUMAN_VERDICT, contract.JOY)
     assert bag.unusable == {topic.full_name: 1 for topic in contract.BAG_TOPICS if topic not in not_decoded}
     assert len(bag.joint_states.stamp_ns) == len(whole.joint_states.stamp_ns)
     assert len(bag.ball.stamp_ns) == len(whole.ball.stamp_ns) and bag.presses == whole.presses
+
+
+def test_what_was_in_the_hand_is_known(tmp_path):
+    recording = made.record([made.lesson(5)])
+    for index, (source, buttons, axes) in enumerate((
+            ('joy', (0, 0, 0), (0.05, -0.02)), ('page', (0, 0, 0), ()), ('page', (0, 1, 0), ()),
+            ('joy', (0, 0, 0), (0.0, -0.8)), ('bad', (0, 0, 0), (float('nan'),)))):
+        recording.add(contract.KEYS, made.START_NS + made.MS + index, made.keys(made.START_NS, source, buttons, axes))
+    bag = read_bag(recording.write(tmp_path / 'bag'))
+    assert bag.devices == ['keys (tutor)', 'keys (page)', 'stick (joy)'], 'a stick that trembles is not used'
+    assert bag.unusable == {'/human/keys': 1}
 
 
 def test_presses_are_rising_edges_of_each_source(tmp_path):

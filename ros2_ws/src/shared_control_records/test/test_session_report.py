@@ -84,7 +84,8 @@ def test_the_summary_has_the_figures(folder):
         'task': 'balance', 'preset': 'coached', 'seed': 0, 'recorded': '2026-11-22T13:30:00Z',
         'tutor': 'simulated: expert', 'simulated_tutor': True,
         'duration_s': 3.0, 'episodes_taught': 3, 'episodes_discarded': 0, 'episodes_broken_off': 0,
-        'taught_s': 3.0, 'key_presses': 15, 'autonomous_success': 19, 'autonomous_episodes': 20,
+        'taught_s': 3.0, 'key_presses': 15, 'devices': ['keys (tutor)'],
+        'autonomous_success': 19, 'autonomous_episodes': 20,
         'control_rate_hz': pytest.approx(999.0), 'real_time_factor': pytest.approx(0.999),
         'tick_ms': {'p50': 0.61, 'p99': 0.93}, 'late_tick_ratio': 0.01, 'restarts': 1, 'bag_checks': [],
         'bag': str(folder.bag), 'picture': str(folder.picture), 'report': str(folder.report)}

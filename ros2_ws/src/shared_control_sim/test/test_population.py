@@ -20,7 +20,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 from shared_control.env import SharedControlEnv
-from shared_control.keys import Key, KeyMap, KeyMoment
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key, KeyMap, KeyMoment
 from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.balance import BALANCE, Balance
 from shared_control.teaching.families import FAMILIES, Use
@@ -169,3 +169,20 @@ def test_a_family_teaches_in_an_environment():
 def test_an_unknown_name_is_refused_with_all_names():
     with pytest.raises(ValueError, match=r'wizard.*expert.*crossover'):
         tutor_named('wizard')
+
+
+def test_a_stick_holds_what_is_wanted_as_late_as_the_keys_and_no_more_than_they():
+    who = careful('reactive', dead_band=0.01, stiffness=0.3, lead=0.0)
+    tutor = make_tutor(who, BALANCE, 1, hand='stick')
+    plant = LocalPlant(BALANCE, tutor)
+    tutor.reset(1)
+    state = plant.reset(3)
+    moments = np.array([tutor.moment(state) for _ in range(100)])[:, 0]
+    plant.close()
+    first = int(np.flatnonzero(moments)[0]) * POLICY_PERIOD
+    assert who.delay * 0.9 <= first <= who.delay * 1.1 + 2 * POLICY_PERIOD
+    assert (np.diff(np.abs(moments)) >= 0.0).all(), 'the hand goes there and stays'
+    assert 0.0 < abs(moments[-1]) < HUMAN_MOMENT_LIMIT and abs(moments[-1]) % KEYSTROKE > 0.01, 'any moment'
+    assert np.sign(moments[-1]) == np.sign(tutor.look(state).position_error[0])
+    with pytest.raises(ValueError, match='a profile knows keys alone'):
+        make_tutor(tutor_named('expert'), BALANCE, hand='stick')

@@ -86,9 +86,9 @@ def ball(ns: int, x: float) -> Any:
         twist=message('geometry_msgs/msg/TwistWithCovariance', twist=twist, covariance=np.zeros(36)))
 
 
-def keys(ns: int, source: str, buttons: tuple[int, ...]) -> Any:
-    """Key states."""
-    return message('sensor_msgs/msg/Joy', header=header(ns, source), axes=np.zeros(0, np.float32),
+def keys(ns: int, source: str, buttons: tuple[int, ...], axes: tuple[float, ...] = ()) -> Any:
+    """States of keys, and of a stick."""
+    return message('sensor_msgs/msg/Joy', header=header(ns, source), axes=np.array(axes, np.float32),
                    buttons=np.array(buttons, np.int32))
 
 

@@ -14,6 +14,7 @@
 
 """What the page's server needs from whoever stands behind it: a running graph, or a recorded session."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -44,8 +45,13 @@ class Desk(Protocol):
     def look(self) -> Picture:
         """What is to be seen now; called once a picture."""
 
-    def press(self, buttons: list[int]) -> None:
-        """The teacher's buttons, in the order of ``Key``, 0 or 1; again and again while nothing changes."""
+    def press(self, buttons: list[int], axes: Sequence[float] = ()) -> None:
+        """The teacher's hands; again and again while nothing changes.
+
+        Args:
+            buttons: in the order of ``Key``, 0 or 1.
+            axes: of a stick, to the left and up, -1..1; empty: the page has none.
+        """
 
     def let_go(self) -> None:
         """The teacher has gone, or looks elsewhere: M_yh = 0."""

@@ -271,6 +271,7 @@ _STAYS = 'each press adds a notch of push, and the push <b>stays</b>. <kbd>space
 _HELP = (
     'Bring the ball to rest on the <b class="goal">green mark</b> in the middle.',
     f'<kbd>←</kbd> and <kbd>→</kbd>: {_STAYS}',
+    "A gamepad's stick, or a finger that pulls the drawing, pushes as far as it is held.",
     'Push when the robot errs; take your push away when it does well. <kbd>p</kbd> pauses.',
     'Of the last episode: <kbd>g</kbd> good, <kbd>b</kbd> bad, <kbd>x</kbd> discard it: the robot forgets it. The same '
     'key again takes that back.')

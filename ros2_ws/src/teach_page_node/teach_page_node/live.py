@@ -15,13 +15,14 @@
 """The running graph: what the page shows of it, and what it may ask for."""
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import Key, KeyPresses, count_buttons
+from shared_control.keys import PAGE, Key, KeyPresses, count_buttons
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
@@ -38,8 +39,6 @@ from .page_requests import PageRequests
 from .picture import LIT_FOR, Picture
 from .showing import Showing
 
-SOURCE = 'page'
-"""The frame_id of the page's keys."""
 NOTICE_FOR = 8.0
 """s"""
 
@@ -69,7 +68,7 @@ class LiveDesk:
         self._history = History()
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
         self._joy = Joy(buttons=[0] * count_buttons(task.keys))
-        self._joy.header.frame_id = SOURCE
+        self._joy.header.frame_id = PAGE
         self._requests = PageRequests(node, self._tell)
         self._judge = Judge(node, self._tell)
         self._background = Background(node)
@@ -149,11 +148,11 @@ class LiveDesk:
                 if down:
                     self._lit_until[key] = now + LIT_FOR
 
-    def press(self, buttons: list[int]) -> None:
+    def press(self, buttons: list[int], axes: Sequence[float] = ()) -> None:
         """See :class:`Desk`."""
         follow_clock(self._node)
         self._joy.header.stamp = self._node.get_clock().now().to_msg()
-        self._joy.buttons = buttons
+        self._joy.buttons, self._joy.axes = buttons, list(axes)
         self._keys.publish(self._joy)
 
     def let_go(self) -> None:

@@ -16,6 +16,7 @@
 
 import math
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,7 +75,7 @@ class ReplayDesk:
         """The report is the session's own file."""
         return None
 
-    def press(self, buttons: list[int]) -> None:
+    def press(self, buttons: list[int], axes: Sequence[float] = ()) -> None:
         """Keys mean nothing to a recording."""
 
     def let_go(self) -> None:

@@ -21,6 +21,7 @@ from typing import Any
 
 from fastapi import WebSocket, WebSocketDisconnect
 from shared_control.keys import count_buttons
+from shared_control.sticks import DIRECTIONS
 
 from .desk import Desk
 from .history import History
@@ -135,7 +136,9 @@ class Room:
                                    'watchers': len(self._visitors) - (self._teacher is not None)}})
 
     def _hear(self, visitor: Visitor, text: str) -> None:
-        """What a page says: ``{"keys": [0, 1, 0]}``, ``{"let_go": true}``, ``{"do": command, "value": ...}``."""
+        """What a page says: ``{"keys": [0, 1, 0]}``, with ``"axes": [0.5, 0.0]`` when there is a stick, ``{"let_go":
+        true}``, ``{"do": command, "value": ...}``.
+        """
         try:
             message = json.loads(text)
             if message == {'do': 'take_seat'}:
@@ -144,7 +147,8 @@ class Room:
             elif visitor is not self._teacher:
                 return
             elif 'keys' in message:
-                self._desk.press(_buttons(message['keys'], count_buttons(self._desk.task.keys)))
+                self._desk.press(_buttons(message['keys'], count_buttons(self._desk.task.keys)),
+                                 _axes(message.get('axes', [])))
             elif 'let_go' in message:
                 self._desk.let_go()
             else:
@@ -157,3 +161,10 @@ def _buttons(value: Any, count: int) -> list[int]:
     if not (isinstance(value, list) and len(value) == count and all(type(v) is int and v in (0, 1) for v in value)):
         raise ValueError(f'expected {count} buttons of 0 or 1')
     return value
+
+
+def _axes(value: Any) -> list[float]:
+    if not (isinstance(value, list) and len(value) in (0, len(DIRECTIONS))
+            and all(type(v) in (int, float) and -1.0 <= v <= 1.0 for v in value)):
+        raise ValueError(f'expected {len(DIRECTIONS)} axes of -1 to 1 (left, up), or none')
+    return [float(v) for v in value]

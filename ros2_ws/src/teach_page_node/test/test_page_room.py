@@ -35,8 +35,8 @@ class Notebook:
     def look(self):
         return Picture(pitch=0.1)
 
-    def press(self, buttons):
-        self.notes.append(buttons)
+    def press(self, buttons, axes=()):
+        self.notes.append((buttons, axes) if axes else buttons)
 
     def let_go(self):
         self.notes.append('let go')
@@ -69,6 +69,7 @@ def test_the_first_page_teaches_and_leaves_no_moment_behind(client, desk):
     with client.websocket_connect('/live') as first:
         assert role(first) == {'teaches': True, 'seat_is_free': False, 'watchers': 0}
         first.send_json({'keys': [1, 0, 0]})
+        first.send_json({'keys': [0, 0, 0], 'axes': [0.5, 0]})
         with client.websocket_connect('/live') as second:
             assert not role(second)['teaches']
             second.send_json({'keys': [0, 1, 0]})
@@ -79,7 +80,7 @@ def test_the_first_page_teaches_and_leaves_no_moment_behind(client, desk):
             assert role(second) == {'teaches': False, 'seat_is_free': True, 'watchers': 1}
             second.send_json({'do': 'take_seat'})
             assert role(second)['teaches']
-    assert desk.notes == [[1, 0, 0], ('pause', None), 'let go', 'let go']
+    assert desk.notes == [[1, 0, 0], ([0, 0, 0], [0.5, 0.0]), ('pause', None), 'let go', 'let go']
 
 
 def test_a_teacher_that_comes_back_has_the_seat_again(client, desk):
@@ -95,7 +96,9 @@ def test_a_teacher_that_comes_back_has_the_seat_again(client, desk):
 
 @pytest.mark.parametrize('text', [
     'no json', '[]', '7', '{}', '{"keys": [1, 0]}', '{"keys": [1, 0, 2]}', '{"keys": [true, 0, 0]}', '{"keys": null}',
-    '{"do": "unknown"}'])
+    '{"do": "unknown"}', '{"keys": [0, 0, 0], "axes": [0.5]}', '{"keys": [0, 0, 0], "axes": [NaN, 0]}',
+    '{"keys": [0, 0, 0], "axes": [0, 1.5]}', '{"keys": [0, 0, 0], "axes": "ab"}',
+    '{"keys": [0, 0, 0], "axes": [true, 0]}'])
 def test_what_makes_no_sense_is_dropped(client, desk, text, caplog):
     with client.websocket_connect('/live') as page:
         role(page)

@@ -12,7 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Teleoperation: turns the keys on /human/keys, or another device, into M_h on /human/target_wrench (50 Hz).
+"""Teleoperation: turns keys and sticks on /human/keys, or another device, into M_h on /human/target_wrench (50 Hz).
+
+A gamepad, a space mouse or a pedal counts as its driver publishes it on /joy (parameters joy_...).
 
 With a terminal it reads the keys there as well and shows the lesson: arrows or a/d tip the tray, space takes the push
 away, Enter ends the practice, q the teaching, p pauses, Ctrl-C quits; g says that the last episode was good, b bad, x
@@ -22,10 +24,11 @@ discards it. Each press adds a notch of push, which stays. The left key moves th
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, Key
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, OUR_SOURCES, Key
 from shared_control.plugins import DEVICES, load, names
 from shared_control.teaching.device import Device
 from shared_control.teaching.feedback import FEEDBACK
+from shared_control.teaching.key_device import KeyDevice
 from shared_control.verdict import Verdict
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
@@ -38,6 +41,7 @@ from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.wrenches import base_wrench, set_moment
 
+from .joystick import Joystick, declare_stick
 from .panel import Panel
 from .sources import Sources
 from .terminal import NoTerminal, Terminal
@@ -90,9 +94,13 @@ class TeleopKeyNode:
             f'{verdict}; -1: none.', minimum=-1, maximum=63) for verdict in Verdict if verdict}
         self._verdicts = VerdictButtons(node, buttons, len(Key) if self._device == KEYS_DEVICE else 0)
 
+        stick = declare_stick(node)
+        self._joystick = Joystick(node, OUR_SOURCES, as_it_is=self._device != KEYS_DEVICE)
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._lesson = Lesson(node)
-        device: Device = load(DEVICES, self._device)(self._task, self._keystroke, self._moment_limit)
+        device: Device = (
+            KeyDevice(self._task, self._keystroke, self._moment_limit, *stick) if self._device == KEYS_DEVICE
+            else load(DEVICES, self._device)(self._task, self._keystroke, self._moment_limit))
         self._sources = Sources(device, self._timeout)
         self._none = np.zeros(len(self._task.axes))
         self._wrench = base_wrench(robot.base_frame)
@@ -125,6 +133,7 @@ class TeleopKeyNode:
             if self._panel is not None:
                 self._serve_panel(self._panel, now_ns)
             self._follow_lesson()
+            self._joystick.poll()
             self._hear_keys(now_ns)
             self._publish(self._sources.moment, now_ns)
             self._diagnostics.tick()

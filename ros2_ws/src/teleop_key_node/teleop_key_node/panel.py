@@ -20,7 +20,7 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import LEFT_AND_RIGHT, Key, KeyMap, count_buttons
+from shared_control.keys import LEFT_AND_RIGHT, TERMINAL, Key, KeyMap, count_buttons
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
 from shared_control_ros import contract
@@ -36,8 +36,6 @@ from .screen import render
 from .sources import Sources
 from .terminal import Terminal
 
-SOURCE = 'terminal'
-"""The frame_id of the terminal's keys."""
 _KEYS = {Stroke.LEFT: Key.LEFT, Stroke.RIGHT: Key.RIGHT, Stroke.UP: Key.UP, Stroke.DOWN: Key.DOWN,
          Stroke.SPACE: Key.SPACE}
 _VERDICTS = {Stroke.GOOD: Verdict.SUCCESS, Stroke.BAD: Verdict.FAILURE, Stroke.DISCARD: Verdict.DISCARD}
@@ -79,7 +77,7 @@ class Panel:
         self._sends_keys = bool(keys)
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
         self._joy = Joy(buttons=[0] * count_buttons(keys or LEFT_AND_RIGHT))
-        self._joy.header.frame_id = SOURCE
+        self._joy.header.frame_id = TERMINAL
         self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
         self._ticks = 0
         self.requests = Requests(node, self.tell)
@@ -168,7 +166,7 @@ class Panel:
         if lesson.phase not in (None, 'teach', 'learn'):
             self.requests.ending = False
         scene.ending = self.requests.ending
-        scene.hand = 'you' if sources.last_pressed in ('', SOURCE) else sources.last_pressed
+        scene.hand = 'you' if sources.last_pressed in ('', TERMINAL) else sources.last_pressed
         scene.paused = self.requests.paused
         if now > self._message_until:
             scene.message = ''

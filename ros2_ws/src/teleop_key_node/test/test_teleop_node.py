@@ -19,6 +19,7 @@ import time
 
 import pytest
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Joy
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 
@@ -95,6 +96,44 @@ def test_keys_rest_unless_the_robot_is_taught(graph, start):
     graph.expect(-5.0)
     graph.begin('teach', episode=3)
     graph.expect(0.0)
+
+
+def test_a_gamepad_counts_as_its_driver_publishes_it(graph, start):
+    pad = graph.publisher(contract.JOY)
+
+    def send(*axes, buttons=(0,) * 8, name='joy'):
+        message = Joy(axes=axes, buttons=buttons)
+        message.header.frame_id = name
+        pad.publish(message)
+    process = start('screen:=off', 'joy_axes:=[3, -1]', 'joy_scale:=[-1.0, 1.0]', 'joy_buttons:=[6, 5, 7, -1, -1]',
+                    'dead_band:=0.25', 'source_timeout:=3.0', 'moment_limit:=10.0', 'keystroke:=4.0')
+    graph.until(lambda: pad.get_subscription_count() == 1, 'the node')
+    send(1.0, 1.0, 1.0, 0.15)
+    graph.until(lambda: graph.listen() == 0.0, 'the first moment')
+    send(0.0, 0.0, 0.0, -0.625)
+    graph.expect(5.0)
+    send(0.0, 0.0, 0.0, 1.0)
+    graph.expect(-10.0)
+    send(0.0, 0.0, 0.0, 0.1, buttons=(1, 1, 1, 1, 1, 0, 1, 0))
+    graph.expect(4.0)
+    joys = []
+    while (joy := graph.joys.take()) is not None:
+        joys.append(joy)
+    assert {joy.header.frame_id for joy in joys} == {'joy'}
+    assert list(joys[-1].buttons) == [1, 0, 0, 0, 0, 0, 1, 0] and list(joys[-1].axes)[1] == 0.0
+    send(0.0, 0.0, 0.0, -1.0, name='terminal')  # a driver that takes the name of a source of ours
+    graph.expect(10.0)
+    graph.expect(0.0)  # unplugged
+    process.stop()
+    output = process.output()
+    assert "'joy' on /joy: 4 axes, 8 buttons; joy_axes and joy_buttons say which of them count" in output
+    assert "'joy' fell silent" in output
+
+
+def test_a_mapping_that_cannot_be_is_named(run_to_its_end):
+    ended = run_to_its_end('joy_axes:=[0]')
+    assert ended.returncode != 0
+    assert 'parameter joy_axes is [0], expected 2 numbers' in ended.stdout + ended.stderr
 
 
 def test_buttons_of_a_joy_judge_the_last_episode(graph, start):

@@ -24,7 +24,7 @@ from ..tasks.balance import BALANCE
 from ..tasks.task import Task
 from .individual import Individual
 from .laws import BangBang, Blind, Contrary, Crossover, Intermittent, Law, Reactive, Surge
-from .person import ROUNDING, SimulatedPerson, key_towards
+from .person import ROUNDING, SimulatedPerson, in_keystrokes, key_towards
 from .picture import Picture
 
 DRIFT_SECONDS = 4.0
@@ -69,8 +69,8 @@ class IndividualTutor(SimulatedPerson):
         self._pressed_at = -math.inf
         self._forgotten: np.ndarray | None = None
 
-    def key(self, seconds: float, picture: Picture, held: np.ndarray) -> Key | None:
-        """See :class:`SimulatedPerson`."""
+    def wanted(self, seconds: float, picture: Picture, held: np.ndarray) -> np.ndarray | None:
+        """The moment that the hand should hold, (k,), N m; None: as it is. For the arguments see :meth:`key`."""
         elapsed = seconds - self._seconds if self._seen else 0.0
         self._seconds = seconds
         self._seen.append((seconds, self._blurred(picture, elapsed)))
@@ -78,7 +78,14 @@ class IndividualTutor(SimulatedPerson):
         self._judge(seen, elapsed)
         if delay is None or self._is_inattentive(seconds, elapsed):
             return None
-        wanted = self._habit(seconds, self._law.wanted(seconds, self._as_trusted(seen), delay, held), held)
+        return self._law.wanted(seconds, self._as_trusted(seen), delay, held)
+
+    def key(self, seconds: float, picture: Picture, held: np.ndarray) -> Key | None:
+        """See :class:`SimulatedPerson`."""
+        aim = self.wanted(seconds, picture, held)
+        if aim is None:
+            return None
+        wanted = self._habit(seconds, in_keystrokes(aim), held)
         if seconds < self._may_press_at:
             return None
         key = key_towards(wanted, held, self._task.keys)

@@ -24,7 +24,7 @@ from typing import Protocol
 import numpy as np
 
 from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE
-from .person import bounded, in_keystrokes
+from .person import bounded
 from .picture import Picture
 from .tutor import BALL_ACCELERATION, TILT_OF_MOMENT, TILT_WANTED_MAX
 
@@ -33,13 +33,13 @@ class Law(Protocol):
     """One strategy, in one episode. ``k`` is the number of the task's axes."""
 
     def wanted(self, seconds: float, seen: Picture, delay: float, held: np.ndarray) -> np.ndarray:
-        """The moment that the keys should hold, (k,), N m.
+        """The moment that the hand should hold, (k,), N m.
 
         Args:
             seconds: now, s.
             seen: what was to see ``delay`` s ago.
             delay: s.
-            held: the moment that the keys hold now, (k,), N m.
+            held: the moment that the hand holds now, (k,), N m.
         """
 
 
@@ -62,7 +62,7 @@ class Reactive:
     def wanted(self, seconds: float, seen: Picture, delay: float, held: np.ndarray) -> np.ndarray:
         """See :class:`Law`."""
         tilt = self._stiffness * seen.position_error - self._damping * seen.velocity
-        return np.where(np.abs(seen.position_error) < self._dead_band, 0.0, in_keystrokes(_moment(tilt)))
+        return np.where(np.abs(seen.position_error) < self._dead_band, 0.0, _moment(tilt))
 
 
 class Crossover:
@@ -95,8 +95,7 @@ class Crossover:
         before = np.zeros_like(aim) if self._tilt is None else self._tilt
         kept = np.exp(-max(seconds - self._seconds, 0.0) / self._lag)
         self._seconds, self._tilt = seconds, kept * before + (1.0 - kept) * aim
-        moment = in_keystrokes(_moment(self._tilt))
-        return np.where(np.abs(seen.position_error) < self._dead_band, 0.0, moment)
+        return np.where(np.abs(seen.position_error) < self._dead_band, 0.0, _moment(self._tilt))
 
 
 class Intermittent:
@@ -124,7 +123,7 @@ class Intermittent:
             error, velocity = self._predict(seen, seen.tilt, delay)
             tilt = self._stiffness * error - self._damping * velocity
             self._event = then, seen.position_error, seen.velocity, seen.tilt
-            self._held = in_keystrokes(_moment(tilt))
+            self._held = _moment(tilt)
         return self._held
 
     def _is_surprised(self, then: float, seen: Picture) -> bool:

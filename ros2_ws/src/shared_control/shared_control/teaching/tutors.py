@@ -45,20 +45,28 @@ def tutor_named(name: str, seed: int = 0) -> Who:
     return profile(name) if name in PROFILES else draw_individual(name, seed)
 
 
-def make_tutor(who: Who, task: 'Task', seed: int = 0, episodes: int = 0) -> 'SimulatedPerson':
-    """Someone at the keys.
+HANDS = ('keys', 'stick')
+"""What a simulated person may have in the hand."""
+
+
+def make_tutor(who: Who, task: 'Task', seed: int = 0, episodes: int = 0, hand: str = HANDS[0]) -> 'SimulatedPerson':
+    """Someone at the keys, or at a stick.
 
     Args:
         who: a profile or an individual.
         task: its axes and keys.
         seed: of what differs from look to look.
         episodes: taught before.
+        hand: what is in it, of :data:`HANDS`; a profile knows keys alone.
 
     Raises:
-        ValueError: the task has other axes than tutors know.
+        ValueError: the task has other axes than tutors know, or a profile is to have a stick.
     """
     from .individual_tutor import IndividualTutor
+    from .stick_tutor import StickTutor
     from .tutor import SimulatedTutor
     if isinstance(who, TutorProfile):
+        if hand != 'keys':
+            raise ValueError(f'a profile knows keys alone; a family can have a {hand}: {", ".join(FAMILIES)}')
         return SimulatedTutor(who, seed, episodes, task)
-    return IndividualTutor(who, seed, episodes, task)
+    return (StickTutor if hand == 'stick' else IndividualTutor)(who, seed, episodes, task)

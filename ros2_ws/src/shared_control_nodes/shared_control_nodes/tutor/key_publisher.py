@@ -18,11 +18,10 @@ import time
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import BUTTONS, Key, KeyMap
+from shared_control.keys import BUTTONS, TUTOR, Key, KeyMap
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
 
-SOURCE = 'tutor'
 HELD_SECONDS = 0.06
 """How long a press lasts, s."""
 REPEAT_SECONDS = 0.05
@@ -43,7 +42,7 @@ class KeyPublisher:
         self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
         self._up = [0] * max(BUTTONS, *(key + 1 for key in keys))
         self._joy = Joy(buttons=self._up)
-        self._joy.header.frame_id = SOURCE
+        self._joy.header.frame_id = TUTOR
         self._published_at = 0.0
         self._clock = node.get_clock()
         self.presses = 0

@@ -33,6 +33,7 @@ from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
+from shared_control.sticks import StickMoment
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
@@ -84,6 +85,8 @@ class Bag:
     training: dict[Topic, Series]
     """By topic: those of ``contract.TRAINING``."""
     presses: list[Press]
+    devices: list[str]
+    """What was used on ``/human/keys``, in the order of first use: ``keys (terminal)``, ``stick (joy)``."""
     judgements: list[Judgement]
     statuses: dict[str, list[Status]]
     """Reports on /diagnostics, by the name of the node."""
@@ -200,6 +203,8 @@ class _Collector:
             contract.DIAGNOSTICS.full_name: self._add_statuses}
         self._keys: dict[str, KeyPresses] = {}
         self._presses: list[Press] = []
+        self._stick = StickMoment()
+        self._devices: dict[str, None] = {}
         self._judgements: list[Judgement] = []
         self._statuses: dict[str, list[Status]] = {}
         self._times: list[int] = []
@@ -282,7 +287,8 @@ class _Collector:
             agent_applied=self._wrenches(contract.AGENT_APPLIED),
             ball=BallTrack(*_joined(self._ball, _no_stamps(), np.empty((0, 3)), np.empty((0, 3)))),
             training={topic: self._series(topic) for topic in contract.TRAINING},
-            presses=self._presses, judgements=self._judgements, statuses=self._statuses, unusable=dict(+self._unusable))
+            presses=self._presses, devices=list(self._devices),
+            judgements=self._judgements, statuses=self._statuses, unusable=dict(+self._unusable))
 
     def _series(self, topic: Topic) -> Series:
         rows = self._rows[topic.full_name]
@@ -334,10 +340,14 @@ class _Collector:
         source = message.header.frame_id
         try:
             pressed = self._keys.setdefault(source, KeyPresses()).update(message.buttons.tolist())
+            is_held = any(self._stick.of([axis]).any() for axis in message.axes.tolist())
         except ValueError:
             self._unusable[contract.KEYS.full_name] += 1
             return
         self._presses += [Press(received_ns, source, key) for key in pressed]
+        for kind, is_used in (('keys', pressed), ('stick', is_held)):
+            if is_used:
+                self._devices.setdefault(f'{kind} ({source})')
 
     def _add_judgement(self, received_ns: int, message: Any) -> None:
         try:

@@ -43,6 +43,8 @@ class EpisodeFrames:
     task: Task
     session: str
     """Name of the session, or of its bag."""
+    devices: str
+    """What was in the hand in the session: ``keys (terminal), stick (joy)``; empty: nothing was used."""
     number: int
     phase: str
     """``teach`` or ``test``"""
@@ -142,8 +144,8 @@ def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool) -> EpisodeFrames:
     poses = [model.tray_pose(row) for row in q]
     count = len(begin)
     return EpisodeFrames(
-        task, _session(bag.path), track.number, track.phase, begin, q[:count], bag.joint_states.qd[joints][:count],
-        position[:count], velocity[:count], errors[:count],
+        task, _session(bag.path), ', '.join(bag.devices), track.number, track.phase, begin,
+        q[:count], bag.joint_states.qd[joints][:count], position[:count], velocity[:count], errors[:count],
         pitch=np.array([pitch(rotation) for _, rotation in poses])[:count],
         on_tray=np.array([rotation.T[:2] @ (where - origin) for (origin, rotation), where in zip(
             poses, position, strict=True)])[:count],

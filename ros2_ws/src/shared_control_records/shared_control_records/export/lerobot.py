@@ -42,7 +42,7 @@ from .frames import EpisodeFrames
 VERSION = 'v3.0'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
-EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome', 'verdict')
+EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome', 'verdict', 'devices')
 """What the list of episodes has of ours, beside what LeRobot asks for."""
 
 
@@ -150,9 +150,9 @@ def _common(episodes: list[EpisodeFrames]) -> tuple[Task, bool]:
     return next(iter(found))
 
 
-def _of_the_session(episode: EpisodeFrames) -> tuple[str, int, str, str, str]:
+def _of_the_session(episode: EpisodeFrames) -> tuple[str, int, str, str, str, str]:
     outcome = 'success' if episode.succeeded else 'failure'
-    return episode.session, episode.number, episode.phase, outcome, str(episode.verdict)
+    return episode.session, episode.number, episode.phase, outcome, str(episode.verdict), episode.devices
 
 
 def _columns(episode: EpisodeFrames, index: int, start: int) -> dict[str, np.ndarray]:

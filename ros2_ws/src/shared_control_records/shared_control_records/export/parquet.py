@@ -43,7 +43,7 @@ def _table(episode: EpisodeFrames) -> pa.Table:
     columns = {
         'session': np.full(len(episode), episode.session),
         'episode': np.full(len(episode), episode.number), 'phase': np.full(len(episode), episode.phase),
-        'verdict': np.full(len(episode), str(episode.verdict)),
+        'verdict': np.full(len(episode), str(episode.verdict)), 'devices': np.full(len(episode), episode.devices),
         'frame': np.arange(len(episode)), 'seconds': (episode.stamp_ns - episode.stamp_ns[0]) * 1e-9,
         'stamp_ns': episode.stamp_ns,
         **{f'q{joint + 1}': episode.q[:, joint] for joint in joints},

@@ -26,6 +26,7 @@ import numpy as np
 import yaml
 from shared_control import contract
 from shared_control.files import write_atomically
+from shared_control.keys import PAGE, TERMINAL, TUTOR
 from shared_control.rates import POLICY_PERIOD
 from shared_control_learning.episode_table import BROKEN_OFF
 
@@ -35,7 +36,7 @@ from ..bag.task import session_record
 from .episodes import EpisodeRow, write_episodes
 from .folder import SessionFolder
 
-TUTOR_OF_KEYS = {'tutor': 'simulated: unknown', 'terminal': 'keyboard', 'page': 'keyboard'}
+TUTOR_OF_KEYS = {TUTOR: 'simulated: unknown', TERMINAL: 'keyboard', PAGE: 'keyboard'}
 """Who taught, by the source of the keys in a bag that does not say it."""
 SECRETS = ('token',)
 """Parameters that are nobody else's business."""

@@ -119,7 +119,9 @@ def _done(summary: Summary) -> str:
     if summary.tutor == 'none':
         text += 'Nobody pressed keys.'
     else:
-        text += f'Tutor: {_tutor(summary)}, whose keys add to the moment that the robot puts on the tray.'
+        text += f'Tutor: {_tutor(summary)}, whose moment adds to the one that the robot puts on the tray.'
+        if summary.devices:
+            text += f' In the hand: {", ".join(summary.devices)}.'
     if summary.autonomous_success is not None:
         text += f' Then the policy was tested alone, in {summary.autonomous_episodes} episodes of random starts.'
     return text

@@ -53,6 +53,8 @@ class Summary:
     taught_s: float | None
     """How long the robot was taught by its own time, with episodes broken off and discarded."""
     key_presses: int | None
+    devices: list[str] | None
+    """What the person, or the simulated tutor, had in the hand: ``keys (terminal)``, ``stick (joy)``."""
     autonomous_success: int | None
     """Episodes of the final test that succeeded."""
     autonomous_episodes: int | None
@@ -106,6 +108,7 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
         taught_s=round(sum(row.seconds or 0.0 for row in rows if row.phase in ('teach', BROKEN_OFF)), 3)
         if rows else None,
         key_presses=len(bag.presses) if bag else None,
+        devices=bag.devices if bag else None,
         autonomous_success=test.successes if test else None,
         autonomous_episodes=len(test.episodes) if test else None,
         control_rate_hz=round(timing.control_rate_hz, 2) if timing else None,

@@ -1,9 +1,10 @@
-// The keys of the task: of the keyboard, and those on the page for mouse and finger.
+// The keys of the task: of the keyboard, those on the page for mouse and finger, and those of a gamepad; and sticks.
 //
 // The state goes out at every change and, as a sign of life, every 100 ms. When the window loses the focus, is hidden or
 // is left, the page says so and falls silent: either makes the human's moment zero.
 
 import { part } from "./parts.js";
+import { watchGamepads, watchPull } from "./sticks.js";
 
 const REPEAT_MS = 100;
 const NAMES = window.teachPage.keys; // in the order of the buttons
@@ -24,18 +25,35 @@ export function listenToKeys(send) {
   let isActive = false;
   let hasFocus = document.hasFocus() && !document.hidden;
 
+  const sticks = [watchPull(() => counts(), () => tell()), watchGamepads(pressed, () => tell())];
+
   const state = () => held.map((by) => (by.size ? 1 : 0));
   const counts = () => isActive && hasFocus;
 
+  // What is not used is not sent: then the hand is a keyboard.
+  function hands() {
+    const axes = sticks.map((stick) => stick.axes()).filter((axes) => axes !== null);
+    if (!axes.length) return { keys: state() };
+    const sum = axes.reduce(([x, y], [dx, dy]) => [x + dx, y + dy]);
+    return { keys: state(), axes: sum.map((value) => Math.max(-1, Math.min(value, 1))) };
+  }
   function tell() {
-    if (counts()) send({ keys: state() });
+    if (counts()) send(hands());
     light();
+  }
+  function pressed(name, by, isDown) {
+    const i = NAMES.indexOf(name);
+    if (i < 0 || held[i].has(by) === isDown) return;
+    if (isDown) held[i].add(by);
+    else held[i].delete(by);
+    tell();
   }
   function light() {
     state().forEach((down, i) => key(i).classList.toggle("down", counts() && down === 1));
   }
   function letGo() {
     held.forEach((by) => by.clear());
+    sticks.forEach((stick) => stick.letGo());
     if (isActive) send({ let_go: true });
     light();
   }
@@ -93,11 +111,14 @@ export function listenToKeys(send) {
   window.addEventListener("focus", () => setFocus(true));
   window.addEventListener("pagehide", letGo);
   document.addEventListener("visibilitychange", () => setFocus(!document.hidden && document.hasFocus()));
-  setInterval(() => counts() && send({ keys: state() }), REPEAT_MS);
+  setInterval(() => counts() && send(hands()), REPEAT_MS);
 
   return {
     setActive(active) {
-      if (isActive && !active) held.forEach((by) => by.clear());
+      if (isActive && !active) {
+        held.forEach((by) => by.clear());
+        sticks.forEach((stick) => stick.letGo());
+      }
       isActive = active;
       setFocus(document.hasFocus() && !document.hidden);
       light();
