@@ -46,18 +46,32 @@ def shown_moment(browser):
     return text, round(float(re.search(r'rotate\((\S+)\)', turn)[1]), 1)
 
 
+@pytest.fixture(scope='class')
+def holds(observer):
+    """``holds(m_x, m_y)``: wait until M_h is that."""
+    wrenches = observer.listen(contract.HUMAN_WRENCH)
+
+    def wait_for(m_x, m_y):
+        observer.spin(lambda: wrenches.clear() or observer.spin_for(0.03) or (
+            wrenches and (wrenches[-1].wrench.torque.x, wrenches[-1].wrench.torque.y) == pytest.approx(
+                (m_x, m_y), abs=1e-3)),
+            what=f'M_h = {m_x}, {m_y}')
+
+    return wait_for
+
+
+PAD = """
+window.pad = {index: 0, connected: true, mapping: "standard", axes: [0, 0, 0, 0],
+              buttons: Array.from({length: 17}, () => ({pressed: false}))};
+navigator.getGamepads = () => [null, window.pad];
+"""
+
+
 class TestTheDetourOnThePage:
     """In this order, in one session that practises."""
 
-    def test_four_keys_roll_the_ball_to_where_they_point(self, browser, observer):
+    def test_four_keys_roll_the_ball_to_where_they_point(self, browser, holds, observer):
         browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
-        wrenches = observer.listen(contract.HUMAN_WRENCH)
-
-        def holds(m_x, m_y):
-            observer.spin(lambda: wrenches.clear() or observer.spin_for(0.03) or (
-                wrenches and (wrenches[-1].wrench.torque.x, wrenches[-1].wrench.torque.y) == (m_x, m_y)),
-                what=f'M_h = {m_x}, {m_y}')
-
         # After it was rolled to one side there is room to the other.
         for key, held, shown, angle, axis in (
                 (Keys.ARROW_DOWN, (-5.0, 0.0), '↓5.0 0.0', 90.0, None),
@@ -77,6 +91,31 @@ class TestTheDetourOnThePage:
                                  ball(browser)[axis] - before[axis]) > ROLLED,
                              f'the ball rolls: {shown}')
         browser.type(Keys.SPACE)
+
+    def test_a_gamepad_pushes_as_far_as_it_is_held(self, browser, holds):
+        holds(0.0, 0.0)
+        browser.script(PAD)  # lies there: its stick trembles
+        browser.script('pad.axes = [0.05, -0.04]')
+        holds(0.0, 0.0)
+        for axes, held in (('[-1, 0.02]', (0.0, 10.0)), ('[0, -1]', (10.0, 0.0)), ('[0.55, 1]', (-10.0, -5.0))):
+            browser.script(f'pad.axes = {axes}')
+            holds(*held)
+        browser.script('pad.axes = [0, 0]; pad.buttons[14].pressed = true')  # its cross is keys: a notch that stays
+        holds(0.0, 5.0)
+        browser.script('pad.buttons[14].pressed = false; pad.axes = [0.55, 0]')
+        holds(0.0, 0.0)
+        browser.script('pad.axes = [0, 0]; pad.buttons[0].pressed = true')
+        holds(0.0, 0.0)
+        browser.script('pad.axes = [1, 0]; pad.buttons[0].pressed = false')
+        holds(0.0, -10.0)
+        browser.script('pad.buttons[12].pressed = true')
+        holds(5.0, -10.0)
+        browser.script('navigator.getGamepads = () => [null, null]')  # pulled out: the notch stays, as with keys
+        holds(5.0, 0.0)
+        browser.type(Keys.ARROW_UP)
+        holds(10.0, 0.0)
+        browser.type(Keys.SPACE)
+        holds(0.0, 0.0)
 
     def test_bar_goal_and_both_views_are_there(self, browser):
         parts = browser.script("""

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from shared_control_ros import contract
 from shared_control_testing.page import Browser
 
 pytestmark = pytest.mark.alone
@@ -78,3 +79,48 @@ class TestTheKeyboard:
         pictures = browser.script('return teachPage.pictures')
         browser.wait(lambda: browser.script('return teachPage.pictures') > pictures + 5, 'more pictures')
         assert browser.text('role') == 'you teach'
+
+
+class TestTheDrawing:
+    """Pulled by a finger or by the mouse, as far as it is held."""
+
+    @pytest.fixture(scope='class')
+    def holds(self, observer):
+        """``holds(left, up)``: wait until the page's stick is there, to within a pixel."""
+        joys = observer.listen(contract.KEYS)
+
+        def wait_for(left, up):
+            joys.clear()
+            observer.spin(lambda: joys and list(joys[-1].axes) == pytest.approx([left, up], abs=0.02),
+                          what=f'axes {left}, {up} (now {joys[-1].axes if joys else None})')
+        return wait_for
+
+    @staticmethod
+    def shows_ring(browser):
+        return browser.script('return document.querySelector(".ring").classList.contains("shown")')
+
+    def test_by_a_finger(self, browser, holds):
+        x, y = browser.script('const b = document.querySelector(".close-view .drawing").getBoundingClientRect();'
+                              'return [b.x + b.width / 2, b.y + b.height / 2]')
+
+        def touch(kind, *points):
+            browser.driver.execute_cdp_cmd('Input.dispatchTouchEvent', {
+                'type': kind, 'touchPoints': [{'x': x + dx, 'y': y + dy} for dx, dy in points]})
+        touch('touchStart', (0, 0))
+        touch('touchMove', (-40, 0))
+        holds(0.5, 0.0)
+        assert self.shows_ring(browser)
+        touch('touchMove', (200, 0))
+        holds(-1.0, 0.0)
+        touch('touchEnd')
+        holds(0.0, 0.0)
+        assert not self.shows_ring(browser)
+
+    def test_by_the_mouse(self, browser, holds):
+        drawing = browser.driver.find_element('css selector', '.close-view .drawing')
+        browser.keys().click_and_hold(drawing).move_by_offset(40, 0).perform()
+        holds(-0.5, 0.0)
+        browser.keys().move_by_offset(-80, -40).perform()
+        holds(0.5, 0.5)
+        browser.keys().release().perform()
+        holds(0.0, 0.0)

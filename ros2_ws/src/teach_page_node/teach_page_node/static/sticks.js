@@ -35,20 +35,27 @@ export function watchPull(counts, changed) {
     place(0, 0);
     ring.classList.add("shown");
   });
-  drawing.addEventListener("pointermove", (event) => {
+  window.addEventListener("pointermove", (event) => {
     if (event.pointerId !== begun?.id) return;
-    const dx = within((event.clientX - begun.x) / PULL_PX);
-    const dy = within((event.clientY - begun.y) / PULL_PX);
-    place(dx, dy);
-    axes = [0 - dx, 0 - dy];
+    if (event.buttons === 0) { // that it was let go has been lost
+      letGo();
+    } else {
+      const dx = within((event.clientX - begun.x) / PULL_PX);
+      const dy = within((event.clientY - begun.y) / PULL_PX);
+      place(dx, dy);
+      axes = [0 - dx, 0 - dy];
+    }
     changed();
   });
-  for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-    drawing.addEventListener(end, (event) => {
+  for (const end of ["pointerup", "pointercancel"]) {
+    window.addEventListener(end, (event) => {
       if (event.pointerId !== begun?.id) return;
       letGo();
       changed();
     });
+  }
+  for (const other of ["mousedown", "dragstart"]) { // no selection, and nothing to be dragged away
+    drawing.addEventListener(other, (event) => event.preventDefault());
   }
   return { axes: () => axes, letGo };
 }
@@ -56,18 +63,20 @@ export function watchPull(counts, changed) {
 // The left sticks of all gamepads; their directions and first button are keys. pressed(name, by, isDown).
 export function watchGamepads(pressed, changed) {
   let axes = null;
+  let down = new Map(); // names of keys, by pad and button
   setInterval(() => {
     const pads = (navigator.getGamepads?.() ?? []).filter((pad) => pad?.connected);
-    for (const pad of pads.filter((pad) => pad.mapping === "standard")) {
-      for (const [button, name] of Object.entries(PAD_KEYS)) {
-        pressed(name, `pad ${pad.index} ${button}`, pad.buttons[button]?.pressed ?? false);
-      }
-    }
-    if (!pads.length && axes === null) return;
-    const now = pads.reduce(([x, y], pad) => [x - within(pad.axes[0]), y - within(pad.axes[1])], [0, 0]);
-    const isNew = axes === null ? now.some((value) => Math.abs(value) > 0.5) : now.some((value, i) => value !== axes[i]);
-    if (!isNew) return; // a pad that lies there is not in use
-    axes = now;
+    const before = down;
+    down = new Map(pads.filter((pad) => pad.mapping === "standard").flatMap((pad) => Object.entries(PAD_KEYS)
+      .filter(([button]) => pad.buttons[button]?.pressed)
+      .map(([button, name]) => [`pad ${pad.index} ${button}`, name])));
+    before.forEach((name, by) => down.has(by) || pressed(name, by, false)); // a pad that was pulled out, too
+    down.forEach((name, by) => before.has(by) || pressed(name, by, true));
+    const held = pads.reduce(([x, y], pad) => [x - within(pad.axes[0]), y - within(pad.axes[1])], [0, 0]);
+    const isNew = axes === null ? held.some((value) => Math.abs(value) > 0.5) // a pad that lies there is not in use
+      : held.some((value, i) => value !== axes[i]);
+    if (!isNew) return;
+    axes = held;
     changed();
   }, POLL_MS);
   return {
