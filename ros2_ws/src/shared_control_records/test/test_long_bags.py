@@ -21,6 +21,7 @@ import pytest
 from shared_control_records.bag import chunks, reader
 from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.reader import read_bag
+from shared_control_records.bag.writer import BagWriter
 from shared_control_records.session.report import write_report
 from shared_control_testing.long_sessions import LESSONS, write_long_session
 
@@ -129,3 +130,23 @@ def test_the_report_of_a_long_session(minutes):
     assert summary.bag_checks == []
     assert summary.episodes_taught == 2 * LESSONS
     assert summary.duration_s == pytest.approx(120, abs=0.1)
+
+
+def test_a_recorder_needs_no_more_memory_the_more_files_there_are(tmp_path):
+    def add_file():
+        writer = BagWriter(tmp_path / 'bag')
+        channels = [writer.add_topic(f'/topic{number}', 'std_msgs/msg/Int32', 'int32 data', 'RIHS01_0', '')
+                    for number in range(10)]
+        for second in range(200):
+            for channel in channels:
+                writer.write(channel, bytes(8), second, second)
+            writer.flush()
+        tracemalloc.start()
+        writer.finish()
+        BagWriter(tmp_path / 'bag').finish()
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return peak
+
+    peaks = [add_file() for _ in range(5)]
+    assert peaks[-1] < 1.2 * peaks[1], peaks

@@ -70,7 +70,7 @@ class Joystick:
 
 def declare_stick(node: Node) -> tuple[float, float]:
     """Declare how sticks are felt: the dead band, as part of their travel, and the exponent of what lies beyond."""
-    return (declare(node, 'dead_band', DEAD_BAND, 'Part of a stick\'s travel, around its middle, that is nothing.',
+    return (declare(node, 'dead_band', DEAD_BAND, 'Part of the travel of a stick, around its middle, that is nothing.',
                     minimum=0.0, maximum=0.9),
             declare(node, 'curve', 1.0, 'Exponent of what lies beyond; above 1 makes small moments finer.',
                     minimum=0.2, maximum=5.0))

@@ -37,6 +37,9 @@ def blank_metadata() -> str:
 def read_summary(path: Path) -> Summary | None:
     """The index at the end of an MCAP file, or None when the file was left unfinished.
 
+    It has no list of chunks: a recorder reads the index of every file whenever it begins a new one, and the lists of an
+    hour take 10 MB.
+
     Raises:
         BagError: the file has an end, and is damaged.
     """
@@ -44,9 +47,12 @@ def read_summary(path: Path) -> Summary | None:
         return None
     with path.open('rb') as file:
         try:
-            return make_reader(file).get_summary()
+            summary = make_reader(file).get_summary()
         except Exception as error:  # mcap raises errors of many kinds
             raise BagError(f'{path} is damaged: {error}; it is left as it is, move it away') from error
+    if summary is not None:
+        summary.chunk_indexes.clear()
+    return summary
 
 
 def is_finished(path: Path) -> bool:
