@@ -136,8 +136,10 @@ class Room:
                                    'watchers': len(self._visitors) - (self._teacher is not None)}})
 
     def _hear(self, visitor: Visitor, text: str) -> None:
-        """What a page says: ``{"keys": [0, 1, 0]}``, with ``"axes": [0.5, 0.0]`` when there is a stick, ``{"let_go":
-        true}``, ``{"do": command, "value": ...}``.
+        """What a page says.
+
+        That is ``{"keys": [0, 1, 0]}``, with ``"axes": [0.5, 0.0]`` when there is a stick, ``{"let_go": true}`` or
+        ``{"do": command, "value": ...}``.
         """
         try:
             message = json.loads(text)
