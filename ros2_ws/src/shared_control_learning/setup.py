@@ -13,7 +13,7 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_sim', 'numpy', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
-        'pydantic', 'tensorboard', 'tqdm',
+        'pydantic', 'scipy', 'tensorboard', 'tqdm',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
@@ -32,6 +32,14 @@ setup(
             'coached_network = shared_control_learning.presets:COACHED_NETWORK',
             'thesis = shared_control_learning.presets:THESIS_PPO',
             'autonomous = shared_control_learning.presets:AUTONOMOUS',
+            'pd = shared_control_learning.baselines.presets:PD',
+            'lqr = shared_control_learning.baselines.presets:LQR',
+            'identified_lqr = shared_control_learning.baselines.presets:IDENTIFIED_LQR',
+            'behaviour_cloning = shared_control_learning.baselines.presets:BEHAVIOUR_CLONING',
+            'hg_dagger = shared_control_learning.baselines.presets:HG_DAGGER',
+            'dcoach = shared_control_learning.baselines.presets:DCOACH',
+            'sac_interventions = shared_control_learning.baselines.presets:SAC_INTERVENTIONS',
+            'pvp = shared_control_learning.baselines.presets:PVP',
         ],
     },
 )

@@ -14,6 +14,7 @@
 
 """One episode, taught or tested: what happened in it, step by step, and its figures."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -104,9 +105,40 @@ class Episode:
         return float(np.divide(human, both, out=np.zeros_like(both), where=both > 0.0).mean()) if len(self) else 0.0
 
     @property
+    def held(self) -> np.ndarray:
+        """In which steps the human held a moment, (steps,), bool."""
+        return _magnitudes(self.human) != 0.0
+
+    @property
     def intervention_rate(self) -> float:
         """Part of the steps in which the human held a moment, 0..1."""
-        return float((_magnitudes(self.human) != 0.0).mean()) if len(self) else 0.0
+        return float(self.held.mean()) if len(self) else 0.0
+
+    @property
+    def interventions(self) -> int:
+        """How often the human began to hold a moment."""
+        held = self.held
+        return int((held & ~np.append(False, held[:-1])).sum())
+
+    @property
+    def presses(self) -> int:
+        """How often the human's moment changed, once a step at most: key presses, where there are keys."""
+        moments = np.array(self.human)
+        return int((np.diff(moments, axis=0, prepend=np.zeros_like(moments[:1])) != 0.0).any(axis=1).sum())
+
+    def noise_share(self, act: Callable[[np.ndarray], np.ndarray]) -> float:
+        """What part of the moments that counted is exploring, 0..1: mean squares, of noise, policy and human.
+
+        Args:
+            act: the policy that explored, observation (n,) -> action (k,), as it does without.
+        """
+        scale = self.task.scale
+        tried = np.array(self.actions).clip(-1.0, 1.0) * scale
+        own = np.array([act(seen) for seen in self.observations]) * scale
+        counted = np.divide(np.array(self.agent), tried, out=np.zeros_like(tried), where=tried != 0.0)
+        noise, policy, human = (float((moments ** 2).sum()) for moments in (
+            counted * (tried - own), counted * own, np.array(self.human)))
+        return noise / (noise + policy + human) if noise else 0.0
 
     def row(self) -> dict[str, float | int | str]:
         """The figures by name, for a table. Moments of several axes count by their magnitude."""

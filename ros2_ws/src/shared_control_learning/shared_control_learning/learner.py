@@ -14,7 +14,7 @@
 
 """What a learner is to everything else: the learn loop, the agent's node, policy files, tests."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -63,6 +63,32 @@ class Learner(Protocol):
         Raises:
             ValueError: these are not tensors of such a learner; the message names the one that is wrong.
         """
+
+
+ROWS_MAX = 100_000
+"""Most rows of what a learner remembers; an episode has 750."""
+
+
+def check_tensors(tensors: 'Mapping[str, torch.Tensor]', like: 'Mapping[str, torch.Tensor]',
+                  growing: Collection[str] = ()) -> None:
+    """Check that tensors read from a file are of the names, shapes and types of a learner's own.
+
+    Args:
+        like: the learner's.
+        growing: names of those that may have any number of rows, all the same.
+
+    Raises:
+        ValueError: they are not; the message names one that is wrong.
+    """
+    if tensors.keys() != like.keys():
+        raise ValueError(f'it should hold the tensors {", ".join(sorted(like))}; these differ: '
+                         f'{", ".join(sorted(tensors.keys() ^ like.keys()))}')
+    rows = min((len(tensors[name]) for name in growing if tensors[name].dim()), default=0)
+    for name, tensor in tensors.items():
+        own = like[name]
+        shape = (rows, *own.shape[1:]) if name in growing else tuple(own.shape)
+        if tuple(tensor.shape) != shape or tensor.dtype != own.dtype or rows > ROWS_MAX:
+            raise ValueError(f'{name} is {tensor.dtype} {tuple(tensor.shape)}, expected {own.dtype} {shape}')
 
 
 class Snapshot:

@@ -21,7 +21,6 @@ from contextlib import contextmanager
 import numpy as np
 import torch
 from shared_control.env import action_space, observation_space
-from shared_control.rates import POLICY_PERIOD
 from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task
 from stable_baselines3.common.buffers import RolloutBuffer
@@ -29,11 +28,11 @@ from stable_baselines3.common.logger import Logger
 
 from .corrections import Corrections, find_corrections
 from .episode import Episode
+from .learner import check_tensors
+from .noise import CorrelatedNoise
+from .optimizer_state import adam_tensors
 from .ppo import ExtraLossPPO, Spaces
 from .settings import PpoLearnerSettings
-
-CORRECTIONS_MAX = 100_000
-"""Most remembered corrections; three episodes have 2,250 at most."""
 
 
 class PpoLearner:
@@ -70,23 +69,16 @@ class PpoLearner:
         self.policy.log_std.requires_grad_(ppo.std_decay is None)
         self.corrections = Corrections.none(task)
         """Those of the last episodes."""
-        self._kept = math.exp(-POLICY_PERIOD / ppo.noise_seconds) if ppo.noise_seconds else 0.0
-        """Correlation of the noise from one step to the next."""
-        self._random = torch.Generator()
-        self._noise = torch.zeros(len(task.axes))
+        self._noise = CorrelatedNoise(len(task.axes), ppo.noise_seconds)
 
     def begin(self) -> int:
         """See :class:`Learner`."""
         seed = episode_seed(self.seed, self.episode + 1)
-        self._random.manual_seed(seed)
-        self._noise = self._draw()
+        self._noise.begin(seed)
         std = self.settings.ppo.std_in(self.episode + 1)
         if std is not None:
             self.policy.log_std.data.fill_(math.log(std))
         return seed
-
-    def _draw(self) -> torch.Tensor:
-        return torch.randn(len(self.task.axes), generator=self._random)
 
     @torch.no_grad()
     def explore(self, observation: np.ndarray) -> np.ndarray:
@@ -95,9 +87,7 @@ class PpoLearner:
         Every action is Gaussian, as PPO takes it to be; those that follow each other may be correlated (Hollenstein
         et al., 2024), since a tray does not follow what changes its sign every 20 ms.
         """
-        noise = self._noise
-        self._noise = self._kept * noise + math.sqrt(1.0 - self._kept ** 2) * self._draw()
-        return (self.means(torch.as_tensor(observation)) + self.policy.log_std.exp() * noise).numpy()
+        return (self.means(torch.as_tensor(observation)) + self.policy.log_std.exp() * self._noise.next()).numpy()
 
     @torch.no_grad()
     def act(self, observation: np.ndarray) -> np.ndarray:
@@ -163,33 +153,16 @@ class PpoLearner:
     def restore(self, tensors: Mapping[str, torch.Tensor]) -> None:
         """See :class:`Learner`."""
         weights, corrections = self._weights(), self.corrections.tensors()
-        wanted = weights.keys() | corrections.keys()
-        if tensors.keys() != wanted:
-            raise ValueError(f'it should hold the tensors {", ".join(sorted(wanted))}; these differ: '
-                             f'{", ".join(sorted(tensors.keys() ^ wanted))}')
-        rows = min((len(tensors[name]) for name in corrections if tensors[name].dim()), default=0)
-        for name, tensor in tensors.items():
-            like = weights[name] if name in weights else corrections[name].new_empty(rows, corrections[name].shape[1])
-            if tensor.shape != like.shape or tensor.dtype != like.dtype or rows > CORRECTIONS_MAX:
-                raise ValueError(f'{name} is {tensor.dtype} {tuple(tensor.shape)}, expected {like.dtype} '
-                                 f'{tuple(like.shape)}')
+        check_tensors(tensors, weights | corrections, corrections.keys())
         for name, own in weights.items():
             own.copy_(tensors[name])
         self.corrections = Corrections(*(tensors[name] for name in corrections))
 
     def _weights(self) -> dict[str, torch.Tensor]:
         """Copying into these changes the learner."""
-        optimizer = self.policy.optimizer
-        tensors = {}
-        for name, parameter in self.policy.named_parameters():
-            state = optimizer.state[parameter]
-            if not state:  # as Adam itself starts
-                state.update(step=torch.tensor(0.0), exp_avg=torch.zeros_like(parameter),
-                             exp_avg_sq=torch.zeros_like(parameter))
-            tensors[f'policy.{name}'] = parameter.data
-            for key in ('step', 'exp_avg', 'exp_avg_sq'):
-                tensors[f'adam.{key}.{name}'] = state[key]
-        return tensors
+        parameters = list(self.policy.named_parameters())
+        return {f'policy.{name}': parameter.data for name, parameter in parameters} | adam_tensors(
+            self.policy.optimizer, parameters)
 
 
 @contextmanager

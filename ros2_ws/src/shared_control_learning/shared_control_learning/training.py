@@ -72,6 +72,12 @@ class TrainingRun:
     """Return of each episode, unscaled."""
     intervention_rates: list[float] = field(default_factory=list)
     """Part of each episode in which the human held a moment, 0..1."""
+    presses: list[int] = field(default_factory=list)
+    """How often the human's moment changed in each episode."""
+    interventions: list[int] = field(default_factory=list)
+    """How often the human began to hold a moment in each episode."""
+    noise_shares: list[float] = field(default_factory=list)
+    """What part of the moments of each episode was exploring (:meth:`.episode.Episode.noise_share`), 0..1."""
     seconds: float = 0.0
     """Wall time spent."""
 
@@ -173,8 +179,9 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
     learner = load_policy(folder / POLICY_NAME)
     # The policy is written last: an episode that it has not learned from is taught anew.
     stored.tests = [test for test in stored.tests if test[0] <= learner.episode]
-    stored.returns = stored.returns[:learner.episode]
-    stored.intervention_rates = stored.intervention_rates[:learner.episode]
+    for figures in (stored.returns, stored.intervention_rates, stored.presses, stored.interventions,
+                    stored.noise_shares):
+        del figures[learner.episode:]
     return learner, stored
 
 
@@ -191,6 +198,8 @@ class _Keeper(Callbacks):
         self._evaluate_every, self._until_skilled, self._watcher = evaluate_every, until_skilled, watcher
         self._started = time.monotonic() - run.seconds
         self._logger = configure(str(folder / TENSORBOARD_NAME), ['tensorboard']) if folder and tensorboard else None
+        self._noise_share = 0.0
+        """What of the last episode was exploring."""
         if folder is not None:
             self._table = EpisodeTable(folder / TABLE_NAME, learner.episode)
 
@@ -206,11 +215,19 @@ class _Keeper(Callbacks):
         """See :class:`Callbacks`."""
         self._watcher.stepped(episode)
 
+    def learning_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._noise_share = episode.noise_share(self._learner.act)
+        self._watcher.learning_started(episode)
+
     def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
         """See :class:`Callbacks`."""
         run = self._run
         run.returns.append(episode.episode_return)
         run.intervention_rates.append(episode.intervention_rate)
+        run.presses.append(episode.presses)
+        run.interventions.append(episode.interventions)
+        run.noise_shares.append(self._noise_share)
         if self._evaluate_every and episode.number % self._evaluate_every == 0:
             run.tests.append((episode.number, passes_now(self._learner, self._test_env, run.seed)))
         run.seconds = time.monotonic() - self._started

@@ -90,5 +90,4 @@ def alone(name: str, task: Task, individuals: int, device: str, bar: tqdm) -> di
 
 
 def _presses_a_minute(episode: Episode) -> float:
-    changed = (np.diff(np.array(episode.human), axis=0) != 0.0).any(axis=1).sum()
-    return float(changed) / (len(episode) * POLICY_PERIOD / 60.0)
+    return episode.presses / (len(episode) * POLICY_PERIOD / 60.0)

@@ -21,57 +21,22 @@ import numpy as np
 import pytest
 import torch
 from shared_control.env import SharedControlEnv
-from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.detour import Detour
 from shared_control.tasks.plate import Plate
 from shared_control.tasks.task import INTEGRAL_BOUND, Observer
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.dynamics import Transitions, fit_dynamics
-from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import as_tested, evaluate
 from shared_control_learning.policy_file import load_policy, save_policy
 from shared_control_learning.presets import GUIDED
 from shared_control_learning.training import train
 from shared_control_learning.warm_up import warm_up
 from shared_control_sim.local_plant import LocalPlant
+from shared_control_testing.rolling import GAIN, WALL, rolling
 
-GAIN, WALL = 0.05, 1.86
 QUICK = replace(GUIDED, settings=replace(GUIDED.settings, model=replace(
     GUIDED.settings.model, iterations=4, batch=8, steps=20)))
-
-
-def rolling(task, choose, seed, steps=600, human=None):
-    """An episode of balls between walls, one along each axis: tilt follows the moment, velocity the tilt."""
-    random = np.random.default_rng(seed)
-    axes = len(task.axes)
-    error, velocity, tilt = random.uniform(-1.5, 1.5, axes), np.zeros(axes), np.zeros(axes)
-    observer, episode = Observer(task), Episode(task)
-
-    def seen():
-        raw = np.array([*error, *velocity, *tilt], np.float32)
-        episode.last_observation = np.append(raw, observer._integral).astype(np.float32) if task.integrates else raw
-        return episode.last_observation
-
-    for number in range(steps):
-        observation = seen()
-        action = choose(observation)
-        held = np.zeros(axes) if human is None else np.full(axes, human(number, error)) / task.scale
-        applied = np.clip(action + held, -2.5, 2.5)
-        tilt = tilt + 0.15 * (0.8 * applied + 0.1 - tilt)
-        velocity = velocity + GAIN * tilt
-        error = error - 1.5 * POLICY_PERIOD * velocity
-        hit = np.abs(error) > WALL
-        error, velocity = np.clip(error, -WALL, WALL), np.where(hit, 0.0, velocity)
-        if task.integrates:
-            observer._integral = np.clip(observer._integral + POLICY_PERIOD * error, -INTEGRAL_BOUND, INTEGRAL_BOUND)
-        reward = float(-0.03 * (error ** 2).sum())
-        episode.add(observation, np.float32(action), reward, {
-            'human': held * task.scale, 'agent': action * task.scale, 'applied': applied * task.scale, 'failed': False,
-            'reward_terms': {}, 'state': SimpleNamespace(position_error=float(np.abs(error).max()), velocity=0.0),
-            'on_tray': None})
-    seen()
-    return episode
 
 
 @pytest.mark.parametrize('task', [BALANCE, Plate()], ids=lambda task: task.name)

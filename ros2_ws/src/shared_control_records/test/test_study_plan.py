@@ -91,7 +91,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
 
 
 @pytest.mark.parametrize(('old', 'new', 'said'), [
-    ('seed: 3', 'sed: 3', "no key 'sed'; there are conditions, participants, seed, tests"),
+    ('seed: 3', 'sed: 3', "no key 'sed'; there are checkpoints, conditions, participants, seed, tests"),
     ('seed: 3', 'seed: -1', 'seed: Input should be greater than or equal to 0, found -1'),
     ('seed: 3', 'seed: 0x' + 'f' * 10_000, 'seed: Input should be less than 2147483648, found a very large number'),
     ('seed: 3', 'seed: ' + '9' * 10_000, 'Exceeds the limit'),

@@ -20,6 +20,8 @@ import numpy as np
 
 TRANSFER = 'transfer: '
 """How the names of tests on other arms begin."""
+CHECKPOINT = 'after episode '
+"""How the names of randomised tests of policies on the way begin."""
 TRACKS = ('position_error', 'velocity', 'velocity_error', 'agent_moment', 'manipulability')
 """The arrays over time that a :class:`ProtocolResult` holds, by name."""
 
@@ -50,3 +52,8 @@ class ProtocolResult:
     """(episodes,), bool"""
     success: np.ndarray
     """As the task judges each episode, (episodes,), bool"""
+
+
+def checkpoint(episode: int) -> str:
+    """The name of the randomised test of a policy after so many episodes."""
+    return f'{CHECKPOINT}{episode}'

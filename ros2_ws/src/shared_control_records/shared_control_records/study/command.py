@@ -18,7 +18,7 @@ import argparse
 import os
 from pathlib import Path
 
-from shared_control.command_line import add_parser
+from shared_control.command_line import add_json_option, add_parser, prose, write_json
 
 
 def add_command(commands: argparse._SubParsersAction) -> None:
@@ -29,11 +29,15 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                     'nobody teaches, or lead a real participant through their part. Stopped, by whatever, it goes on '
                     'where it was when the same command is given again.',
         examples=['shared-control study studies/quick.yaml',
+                  'shared-control study studies/baselines.yaml --quick --json -',
                   'shared-control study studies/people.yaml --participant 3',
                   'shared-control report out/studies/quick'])
     parser.add_argument('plan', type=Path, metavar='PLAN', help='YAML file; studies/ has examples')
     parser.add_argument('--output', type=Path, default=None, metavar='FOLDER',
                         help='folder of the study (default: out/studies/NAME, as the plan is called)')
+    parser.add_argument('--quick', action='store_true',
+                        help='a participant of each of the first two groups, three episodes: whether all of it runs '
+                             '(default: all of the plan)')
     parser.add_argument('--workers', type=int, default=len(os.sched_getaffinity(0)), metavar='N',
                         help='processes on this machine (default: one a core)')
     parser.add_argument('--ray', metavar='ADDRESS', default=None,
@@ -43,6 +47,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
     parser.add_argument('--withdraw', choices=('keep', 'delete'), default=None,
                         help='--participant takes no further part: keep, or delete, what was recorded of them '
                              '(default: they go on)')
+    add_json_option(parser, 'the figures of every condition with every group of simulated participants')
 
 
 def run(args: argparse.Namespace) -> int:
@@ -54,8 +59,9 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError(f'--workers is {args.workers}, expected at least 1')
     if args.withdraw and args.participant is None:
         raise ValueError('--withdraw needs --participant NUMBER')
-    folder = StudyFolder(args.output or Path('out/studies') / args.plan.stem)
-    plan = folder.begin(args.plan, args.participant)
+    folder = StudyFolder(
+        args.output or Path('out/studies') / (f'{args.plan.stem}-quick' if args.quick else args.plan.stem))
+    plan = folder.begin(args.plan, args.participant, args.quick)
     if args.participant is not None:
         if plan.people is None:
             raise ValueError(f'the participants of {args.plan} are simulated: leave --participant out')
@@ -67,8 +73,15 @@ def run(args: argparse.Namespace) -> int:
             return 0
         return 0 if lead_through(folder, plan, participant, asker_of(plan.people)) else INTERRUPTED
     who = 'simulated' if plan.people is None else 'real'
+    prints = prose(args.json)
     print(f'{len(plan.participants)} {who} participants x {len(plan.conditions)} conditions in {folder.path}',
-          flush=True)
-    do_runs(folder, plan, args.workers, args.ray)
-    print(f'The report:\n  shared-control report {folder.path}')
+          file=prints, flush=True)
+    do_runs(folder, plan, args.workers, args.ray, prints)
+    if plan.people is None:
+        from ..study_report.cells import as_text, cell_rows
+        from ..study_report.measures import load_study
+        rows = cell_rows(load_study(folder))
+        print(as_text(rows), file=prints)
+        write_json({'tutors': 'simulated', 'seed': plan.seed, 'cells': rows}, args.json)
+    print(f'The report:\n  shared-control report {folder.path}', file=prints)
     return 0

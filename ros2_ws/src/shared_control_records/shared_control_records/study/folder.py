@@ -19,7 +19,7 @@ from typing import IO
 
 from shared_control.files import lock, write_atomically
 
-from .plan import Job, Participant, Plan, load_plan
+from .plan import Job, Participant, Plan, plan_of, read_plan
 
 
 class StudyError(OSError):
@@ -59,18 +59,20 @@ class StudyFolder:
         """The folder of the session in which a real participant teaches."""
         return self.person(job.participant) / job.condition.name
 
-    def begin(self, plan_file: Path, number: int | None = None) -> Plan:
+    def begin(self, plan_file: Path, number: int | None = None, quick: bool = False) -> Plan:
         """Make the folder, or take it up again; gives the plan.
 
         Args:
             plan_file: what the folder was, or will be, begun with.
             number: claim a participant's folder for this process alone; when None, the runs.
+            quick: it is begun with the quick form of the plan.
 
         Raises:
             PlanError: the plan cannot be used, or has no such participant.
             StudyError: the folder belongs to another plan, is in use, or cannot be written.
         """
-        plan, text = load_plan(plan_file), plan_file.read_bytes()
+        text = read_plan(plan_file, quick)
+        plan = plan_of(text, plan_file)
         try:
             claimed = self.path if number is None else self.person(plan.participant(number))
             claimed.mkdir(parents=True, exist_ok=True)

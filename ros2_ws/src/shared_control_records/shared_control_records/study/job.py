@@ -15,16 +15,20 @@
 """One run of a study: train, test, keep the result."""
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from shared_control.control.sharing import Sharing
+from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
+from shared_control_learning.callbacks import Callbacks
+from shared_control_learning.episode import Episode
 from shared_control_learning.episode_table import TABLE_NAME, read_rows
 from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
-from shared_control_learning.evaluation.result import ProtocolResult
+from shared_control_learning.evaluation.result import ProtocolResult, checkpoint
 from shared_control_learning.evaluation.run import run_protocol
-from shared_control_learning.policy_file import POLICY_NAME, load_policy
+from shared_control_learning.policy_file import POLICY_NAME, SUFFIX, load_policy
 from shared_control_learning.presets import preset_for
 from shared_control_learning.training import train
 
@@ -60,15 +64,55 @@ def run_job(folder: StudyFolder, name: str) -> None:
 def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     """Train with a simulated tutor or alone, then test."""
     path, started = folder.run(job), time.monotonic()
+    keeper = _Checkpoints(path, plan.checkpoints)
     training = train(
         preset_for(job.condition.task, job.condition.preset),
         job.participant.tutor if job.condition.taught else None, job.participant.seed, job.condition.episodes,
         until_skilled=True, physics=job.condition.physics, folder=path, evaluate_every=job.condition.evaluate_every,
-        sharing=Sharing(job.condition.sharing))
+        sharing=Sharing(job.condition.sharing), callbacks=keeper)
+    episodes = table(path / TABLE_NAME)
+    if len(training.presses) == len(episodes):  # not of a run that an older version began
+        for number, row in enumerate(episodes):
+            row |= {'presses': training.presses[number], 'interventions': training.interventions[number],
+                    'noise_share': training.noise_shares[number]}
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
-        episodes=table(path / TABLE_NAME), tests=run_tests(plan, job, path / POLICY_NAME),
+        episodes=episodes, tests=run_tests(plan, job, path / POLICY_NAME) | keeper.run_tests(job),
         seconds=time.monotonic() - started)
+
+
+class _Checkpoints(Callbacks):
+    """Keeps the policies after some episodes, and tests them in the end.
+
+    Args:
+        folder: of the run, where the policy is, too.
+        episodes: after how many.
+    """
+
+    def __init__(self, folder: Path, episodes: tuple[int, ...]):
+        self._kept = {number: folder / f'after_{number}_episodes{SUFFIX}' for number in episodes}
+        self._policy = folder / POLICY_NAME
+
+    def episode_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`; the policy on disk is that of the episode before."""
+        kept = self._kept.get(episode.number - 1)
+        if kept is not None and not kept.exists():
+            write_atomically(kept, self._policy.read_bytes())
+
+    def run_tests(self, job: Job) -> dict[str, ProtocolResult]:
+        """The randomised test of the policies that were kept, by name."""
+        found = {}
+        for number, path in self._kept.items():
+            if path.exists():
+                learner = load_policy(path)
+                [result] = run_protocol('randomized', learner.act, learner.task, seed=_test_seed(job),
+                                        physics=job.condition.tested_in or job.condition.physics)
+                found[checkpoint(number)] = replace(result, test=checkpoint(number))
+        return found
+
+
+def _test_seed(job: Job) -> int:
+    return episode_seed(TEST_SEED, job.participant.number)
 
 
 def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
@@ -90,9 +134,8 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
     """What the plan has every policy go through, by name."""
     learner = load_policy(policy)
     task, physics = learner.task, job.condition.tested_in or job.condition.physics
-    seed = episode_seed(TEST_SEED, job.participant.number)
     results = [result for name in plan.tests
-               for result in run_protocol(name, learner.act, task, seed=seed, physics=physics)]
+               for result in run_protocol(name, learner.act, task, seed=_test_seed(job), physics=physics)]
     return {result.test: result for result in results}
 
 

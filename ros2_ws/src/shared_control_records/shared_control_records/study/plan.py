@@ -25,7 +25,7 @@ from shared_control.teaching.profiles import PROFILES, profile
 from shared_control.teaching.tutors import Who
 from shared_control_learning.wrong_content import what_is_wrong
 
-from .plan_file import SIZE_MAX, TESTS, Learning, People, Simulated, parse
+from .plan_file import SIZE_MAX, TESTS, Learning, People, Simulated, parse, quick
 
 PERSON = 'person'
 """The group of real participants."""
@@ -82,6 +82,8 @@ class Plan:
     conditions: tuple[Condition, ...]
     tests: tuple[str, ...] = TESTS
     """What every policy goes through at the end."""
+    checkpoints: tuple[int, ...] = ()
+    """After how many episodes policies go through the randomised test, too."""
     people: People | None = None
     """None: participants are simulated."""
     jobs: tuple[Job, ...] = field(init=False)
@@ -116,15 +118,38 @@ def load_plan(path: Path) -> Plan:
         PlanError: it is not what it should be; the message names file and key.
         OSError: it cannot be read.
     """
+    return plan_of(read_plan(path), path)
+
+
+def read_plan(path: Path, in_quick_form: bool = False) -> bytes:
+    """The text of a plan, or of its quick form (:func:`.plan_file.quick`).
+
+    Raises:
+        PlanError: it has no quick form; the message names file and key.
+        OSError: it cannot be read.
+    """
+    with path.open('rb') as file:
+        text = file.read(SIZE_MAX + 1)
     try:
-        with path.open('rb') as file:
-            content = parse(file.read(SIZE_MAX + 1))
+        return quick(text) if in_quick_form else text
+    except (ValueError, yaml.YAMLError, RecursionError) as error:
+        raise PlanError(f'{path}: {what_is_wrong(error)}') from error
+
+
+def plan_of(text: bytes, path: Path) -> Plan:
+    """The plan that a text is, which came from ``path``.
+
+    Raises:
+        PlanError: it is not what it should be; the message names file and key.
+    """
+    try:
+        content = parse(text)
     except (ValueError, yaml.YAMLError, RecursionError) as error:
         raise PlanError(f'{path}: {what_is_wrong(error)}') from error
     who = content.participants
     conditions = tuple(Condition(name=name, **dict(settings)) for name, settings in content.conditions.items())
     return Plan(content.seed, _participants(who, content.seed), conditions, tuple(content.tests),
-                who if isinstance(who, People) else None)
+                tuple(sorted(set(content.checkpoints))), who if isinstance(who, People) else None)
 
 
 def draw_tutor(group: str, spread: float, seed: int) -> Who:

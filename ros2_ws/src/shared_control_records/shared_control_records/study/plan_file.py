@@ -160,6 +160,8 @@ class PlanFile(Section):
     conditions: Annotated[
         dict[Annotated[Name, AfterValidator(_folder_name)], Learning], Field(min_length=1, max_length=100)]
     tests: Annotated[list[Test], Field(max_length=len(TESTS))] = list(TESTS)
+    checkpoints: Annotated[list[Episodes], Field(max_length=20)] = []
+    """After so many episodes a policy goes through the randomised test, too."""
 
     @field_validator('participants', mode='plain')
     @classmethod
@@ -183,6 +185,27 @@ class _Loader(yaml.SafeLoader):
         if self.check_event(yaml.AliasEvent):
             raise ValueError(f'line {self.peek_event().start_mark.line + 1}: aliases (*name) are not for plans')
         return super().compose_node(parent, index)
+
+
+QUICK_EPISODES, QUICK_GROUPS = 3, 2
+"""How much of a plan its quick form has, at most."""
+
+
+def quick(text: bytes) -> bytes:
+    """A plan of minutes, to see whether all of it runs: a participant of each of the first groups, three episodes.
+
+    Raises:
+        ValueError, yaml.YAMLError, RecursionError: it is no plan, or not of simulated participants.
+    """
+    plan = parse(text)
+    if isinstance(plan.participants, People):
+        raise ValueError('--quick is for simulated participants; these are real')
+    groups = list(plan.participants.simulated)[:QUICK_GROUPS]
+    content = plan.model_dump(exclude={'participants'})
+    content['participants'] = {**plan.participants.model_dump(), 'simulated': dict.fromkeys(groups, 1)}
+    for condition in content['conditions'].values():
+        condition['episodes'] = condition['evaluate_every'] = min(condition['episodes'], QUICK_EPISODES)
+    return yaml.safe_dump({**content, 'tests': ['randomized'], 'checkpoints': []}, sort_keys=False).encode()
 
 
 def parse(text: bytes) -> PlanFile:

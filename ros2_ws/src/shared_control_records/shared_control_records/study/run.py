@@ -18,6 +18,7 @@ import json
 import sys
 from collections.abc import Generator, Sequence
 from contextlib import closing
+from typing import TextIO
 
 from tqdm import tqdm
 
@@ -32,12 +33,14 @@ DISK = ('No space left', 'Disk quota', 'Read-only file system')
 """Errors after which no other run can succeed either."""
 
 
-def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = None) -> None:
+def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = None,
+            output: TextIO | None = None) -> None:
     """Do the runs that can be done and are not; a bar shows how many are, and the time left.
 
     Args:
         workers: processes on this machine.
         ray: address of a Ray cluster to use instead.
+        output: where it is printed what became of each run; standard output when not given.
 
     Raises:
         StudyError: runs failed; the message says which and why. The others are done.
@@ -60,7 +63,7 @@ def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = Non
                 else:
                     time_left.learn(job, _seconds(folder, job))
                 bar.update()
-                _tell(bar, f'{outcome.name}: {outcome.error or _summary(folder, job)}')
+                _tell(bar, f'{outcome.name}: {outcome.error or _summary(folder, job)}', output)
             bar.set_postfix_str(f'about {in_words(time_left.estimate(left.values(), workers))} left')
             if failed and any(text in (failed[-1].error or '') for text in DISK):
                 break
@@ -99,8 +102,8 @@ def _content(folder: StudyFolder, job: Job) -> dict:
     return json.loads((folder.run(job) / RESULT).read_text())
 
 
-def _tell(bar: tqdm, text: str) -> None:
+def _tell(bar: tqdm, text: str, output: TextIO | None) -> None:
     if bar.disable:
-        print(text, flush=True)
+        print(text, file=output, flush=True)
     else:
         bar.write(text, file=sys.stderr)

@@ -21,7 +21,7 @@ import numpy as np
 import pandas as pd
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
-from shared_control_learning.evaluation.result import TRANSFER, ProtocolResult
+from shared_control_learning.evaluation.result import CHECKPOINT, TRANSFER, ProtocolResult
 from shared_control_learning.presets import preset_for
 from shared_control_sim.changes import AS_TAUGHT
 
@@ -130,7 +130,8 @@ def transfers(run: RunResult) -> list[ProtocolResult]:
 
 
 def _row(run: RunResult, lost: float) -> dict[str, float | int | str | bool | None]:
-    fallen = [fell for name, test in run.tests.items() if not name.startswith(TRANSFER) for fell in test.fallen]
+    fallen = [fell for name, test in run.tests.items() if not name.startswith((TRANSFER, CHECKPOINT))
+              for fell in test.fallen]
     row: dict[str, float | int | str | bool | None] = {
         'condition': run.condition, 'taught': run.taught, 'participant': run.participant, 'group': run.group,
         'simulated': run.simulated,

@@ -29,6 +29,7 @@ from ..plotting.plot import origin
 from ..plotting.style import PAPER
 from ..session.report import STYLE_SHEET
 from ..study.folder import StudyFolder
+from .cells import cell_rows
 from .figures import draw_all
 from .measures import Study, load_study, lost_error, run_table, times
 from .statistics import survival
@@ -55,7 +56,8 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
         path.mkdir(parents=True, exist_ok=True)
     runs = run_table(study)
     tables = {'runs': runs, 'conditions': conditions_table(study, runs), 'comparisons': comparison_table(study, runs),
-              'groups': group_table(runs), **({'transfer': transfer_table(study)} if 'elsewhere' in runs else {})}
+              'groups': group_table(runs), 'cells': pd.DataFrame(cell_rows(study)),
+              **({'transfer': transfer_table(study)} if 'elsewhere' in runs else {})}
     drawn = []
     footer = origin(study.plan.seed)
     with matplotlib.rc_context(PAPER):
