@@ -71,7 +71,7 @@ def test_the_controller_node_answers_six_joints_with_six_torques(ur5, start_node
 
 def test_an_unknown_robot_is_refused(start_node):
     node = start_node('torque_ctrl_node', robot='nobody')
-    assert node.process.wait(30) != 0
+    assert node.process.wait(60) != 0
     assert "parameter 'robot': no robot 'nobody'" in node.log()
 
 

@@ -293,7 +293,7 @@ def replay(tmp_path):
     process, address = serve('replay', str(bag))
     yield address
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=20)
+    process.communicate(timeout=60)
     assert process.returncode == 0
 
 

@@ -155,7 +155,7 @@ def test_the_forms_of_a_study_have_no_barriers_and_are_filled_in_by_keys_alone(b
             browser.type('\ue007')
             break
     browser.wait(lambda: browser.script('return document.querySelector("h1")?.textContent') == 'Thank you.', 'thanks')
-    thread.join(30)
+    thread.join(60)
     assert not thread.is_alive()
 
 

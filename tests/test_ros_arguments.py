@@ -38,7 +38,7 @@ def graph(observer, params_file):
     yield observer
     for process in started:
         process.terminate()
-    assert [process.wait(20) for process in started] == [0, 0, 0]
+    assert [process.wait(60) for process in started] == [0, 0, 0]
 
 
 class TestInANamespace:

@@ -37,7 +37,7 @@ def test_leaves_cleanly_and_has_told_its_mode(start_node, observer, physics):
     ({'drop_rate': 2.0}, "'drop_rate'"), ({'pace': 0.0}, "'pace'"), ({'physics': 'flat'}, 'bullet, mujoco')])
 def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('mock_panda_node', **parameters)
-    assert node.process.wait(20) == 2
+    assert node.process.wait(60) == 2
     assert said in node.log() and 'Traceback' not in node.log()
 
 

@@ -212,5 +212,5 @@ def test_leaves_cleanly(start_node, number):
 ])
 def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('panda_sim_node', **parameters)
-    assert node.process.wait(20) == 2
+    assert node.process.wait(60) == 2
     assert said in node.log() and 'Traceback' not in node.log()

@@ -70,7 +70,7 @@ def test_a_killed_node_is_started_again_and_all_are_stopped(make_node):
         poll_until(supervisor, lambda: nodes[1].pid != killed)
         assert said == ['torque_ctrl_node died (signal 9); starting it again']
         assert supervisor.restarts == 1
-        assert nodes[1].wait_ready(20.0)
+        assert nodes[1].wait_ready(60.0)
     finally:
         supervisor.stop()
     assert not any(alive(node.pid) for node in nodes)
@@ -82,10 +82,10 @@ def test_a_node_is_ready_when_it_says_so_and_not_before(make_node):
     node.log.write_text('already\n')  # of an earlier run, or any line with the word in it
     node.start()
     assert not node.wait_ready(0.0)
-    assert node.wait_ready(20.0)
+    assert node.wait_ready(60.0)
     assert not node.wait_ready(0.0), 'once a start'
     node.interrupt()
-    node.wait(10.0)
+    node.wait(60)
 
 
 def test_nobody_waits_for_a_node_that_has_ended(make_node):
@@ -125,7 +125,7 @@ from shared_control_bringup.node_process import NodeProcess
 parameters.save(parameters.load(), Path({str(tmp_path / 'p.yaml')!r}))
 node = NodeProcess('torque_ctrl_node', Path({str(tmp_path / 'p.yaml')!r}), Path({str(tmp_path / 'log')!r}))
 node.start()
-node.wait_ready(20)
+node.wait_ready(60.0)
 print(node.pid, flush=True)
 time.sleep(60)
 """
@@ -134,7 +134,7 @@ time.sleep(60)
     assert alive(pid)
     session.kill()
     session.wait()
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 60.0
     while alive(pid):
         assert time.monotonic() < deadline
         time.sleep(0.05)
@@ -150,11 +150,11 @@ def test_in_real_time_the_loop_runs_before_the_threads_of_the_middleware(make_no
     node = make_node('torque_ctrl_node', in_control_loop=True, in_real_time=True)
     node.start()
     try:
-        assert node.wait_ready(20.0)
+        assert node.wait_ready(60.0)
         threads = [int(path.name) for path in Path(f'/proc/{node.pid}/task').iterdir()]
         priority = {thread: os.sched_getparam(thread).sched_priority for thread in threads}
         assert os.sched_getscheduler(node.pid) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO
         assert len(threads) > 3 and max(p for thread, p in priority.items() if thread != node.pid) < priority[node.pid]
     finally:
         node.interrupt()
-        node.wait(10.0)
+        node.wait(60)

@@ -82,7 +82,7 @@ def test_a_simulator_without_a_controller_is_said_with_its_newest_warning(domain
     finally:
         waits.close()
         simulator.interrupt()
-        simulator.wait(10.0)
+        simulator.wait(60)
 
 
 FREEZES = """
@@ -142,7 +142,7 @@ def watched(domain_id, observer, tmp_path, monkeypatch):
     yield node, said, until, of, freeze
     waits.close()
     node.kill()
-    node.wait(10.0)
+    node.wait(60)
 
 
 def test_a_loop_that_somebody_has_stopped_is_said_and_reported_and_left_alone(watched):

@@ -44,7 +44,7 @@ def test_without_the_library_it_says_what_to_install(start_node, tmp_path, monke
     (tmp_path / 'panda_py.py').write_text('raise ImportError("not here")')
     monkeypatch.setenv('PYTHONPATH', str(tmp_path))
     node = start_node('panda_bridge_node', hostname='nobody')
-    assert node.process.wait(20) == 2
+    assert node.process.wait(60) == 2
     assert 'error: panda-python cannot be imported (not here): pip install panda-python' in node.log()
     assert 'Traceback' not in node.log()
 
@@ -55,7 +55,7 @@ def test_without_the_library_it_says_what_to_install(start_node, tmp_path, monke
 ])
 def test_without_an_arm_it_says_so(with_stand_in, start_node, hostname, said):
     node = start_node('panda_bridge_node', **hostname)
-    assert node.process.wait(20) == 2
+    assert node.process.wait(60) == 2
     assert said in node.log() and 'Traceback' not in node.log()
 
 
@@ -147,4 +147,4 @@ def test_a_loop_that_stands_still_while_the_arm_is_under_control_ends_it(start_n
     node.process.send_signal(signal.SIGSTOP)
     observer.spin_for(3.0)  # twice command_timeout, and more
     node.process.send_signal(signal.SIGCONT)
-    assert node.process.wait(20) == -signal.SIGALRM
+    assert node.process.wait(60) == -signal.SIGALRM

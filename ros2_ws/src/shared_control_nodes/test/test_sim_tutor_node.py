@@ -122,5 +122,5 @@ def test_goes_on_when_it_is_told_of_an_impossible_episode(start_node, observer):
 
 def test_unknown_profile_is_one_clear_line(start_node):
     node = start_node('sim_tutor_node', profile='genius')
-    assert node.process.wait(20) == 2
+    assert node.process.wait(60) == 2
     assert "parameter 'profile' has no choice 'genius'" in node.log()

@@ -186,14 +186,14 @@ class Visitor:
 
     def get(self, **headers):
         request = urllib.request.Request(self._address, headers=headers)
-        return urllib.request.urlopen(request, timeout=20).read().decode()
+        return urllib.request.urlopen(request, timeout=60).read().decode()
 
     def send(self, **fields):
         """Fill in the form that is shown; what comes then."""
         shown = self.get()
         key = shown.partition('name="key" value="')[2].partition('"')[0]
         return urllib.request.urlopen(
-            self._address, urllib.parse.urlencode({'key': key, **fields}).encode(), timeout=20).read().decode()
+            self._address, urllib.parse.urlencode({'key': key, **fields}).encode(), timeout=60).read().decode()
 
 
 @pytest.fixture
@@ -208,7 +208,7 @@ def asked():
         thread.start()
 
         def answer():
-            thread.join(20)
+            thread.join(60)
             return given[0]
         visitor = Visitor(page)
         for _ in range(200):

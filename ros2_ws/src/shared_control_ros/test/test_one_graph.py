@@ -25,7 +25,7 @@ def test_a_second_one_is_refused_and_what_was_killed_is_no_hindrance(start_node,
     there = start_node(first)
     there.wait_for_log('ready')
     refused = start_node(second)
-    assert refused.process.wait(30) == 2
+    assert refused.process.wait(60) == 2
     assert f'/{first} (process {there.process.pid}) is the {role} in ROS domain' in refused.log()
     assert 'ROS_DOMAIN_ID' in refused.log() and 'Traceback' not in refused.log()
     there.stop(signal.SIGKILL)

@@ -73,5 +73,5 @@ def test_a_node_runs_where_no_log_can_be_written(domain_id, variables):
             said.append(node.stderr.readline())
     finally:
         node.terminate()
-        node.communicate(timeout=20)
+        node.communicate(timeout=60)
     assert any('ROS_LOG_DIR' in line for line in said)

@@ -89,7 +89,7 @@ class RunningNode:
         """What it has printed so far."""
         return self.log_file.read_text(errors='replace')
 
-    def stop(self, number: int = signal.SIGINT, timeout: float = 15.0) -> int:
+    def stop(self, number: int = signal.SIGINT, timeout: float = 60.0) -> int:
         """Send a signal and give the exit code."""
         if self.process.poll() is None:
             self.process.send_signal(number)
@@ -100,7 +100,7 @@ class RunningNode:
             self.process.wait()
             raise
 
-    def wait_for_log(self, text: str, timeout: float = 20.0) -> None:
+    def wait_for_log(self, text: str, timeout: float = 60.0) -> None:
         """Wait until it has printed ``text``."""
         deadline = time.monotonic() + timeout
         while text not in self.log():
@@ -180,7 +180,7 @@ class Observer:
         """A publisher on a topic of the contract."""
         return self.node.create_publisher(topic.msg_type, topic.name, topic.qos)
 
-    def spin(self, until: Callable[[], Any], timeout: float = 20.0, what: str = '') -> None:
+    def spin(self, until: Callable[[], Any], timeout: float = 60.0, what: str = '') -> None:
         """Serve callbacks until ``until()`` is true; fail after ``timeout`` seconds."""
         deadline = time.monotonic() + timeout
         while not until():
@@ -193,7 +193,7 @@ class Observer:
         while time.monotonic() < deadline:
             self._serve(0.01)
 
-    def call(self, service_type: type, name: str, request: Any, timeout: float = 20.0,
+    def call(self, service_type: type, name: str, request: Any, timeout: float = 60.0,
              beside: Callable[[], Any] = lambda: None) -> Any:
         """Call a service and give its response; ``beside()`` is called again and again until that is there."""
         client = self.node.create_client(service_type, name)

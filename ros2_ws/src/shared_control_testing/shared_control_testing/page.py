@@ -122,7 +122,7 @@ class Browser:
         """What a piece of JavaScript returns."""
         return self.driver.execute_script(code)
 
-    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 30.0) -> Any:
+    def wait(self, condition: Callable[[], Any], what: str, timeout: float = 60.0) -> Any:
         """Wait until ``condition()`` is true, and give its value."""
         deadline = time.monotonic() + timeout
         while not (value := condition()):

@@ -42,7 +42,7 @@ def _environment() -> dict[str, str]:
     return os.environ | {'TERM': 'xterm-256color', 'LC_ALL': 'C.UTF-8', 'PYTHONUNBUFFERED': '1'}
 
 
-def _until(happened: Callable[[], object], what: str, timeout: float = 8.0) -> None:
+def _until(happened: Callable[[], object], what: str, timeout: float = 60.0) -> None:
     """Wait until something has happened."""
     deadline = time.monotonic() + timeout
     while not happened():
@@ -129,7 +129,7 @@ class Process:
     def stop(self, number: int = signal.SIGTERM) -> int:
         """Send a signal; the exit code."""
         self.popen.send_signal(number)
-        return self.popen.wait(5.0)
+        return self.popen.wait(60)
 
     def output(self) -> str:
         """What it said; call it when it has ended."""
@@ -195,4 +195,4 @@ def run_to_its_end(domain_id: int) -> Callable[..., subprocess.CompletedProcess]
     """Run the node, which is to end by itself."""
     return lambda *parameters: subprocess.run(
         [*_COMMAND, *(word for parameter in parameters for word in ('-p', parameter))],
-        env=_environment(), capture_output=True, text=True, timeout=20)
+        env=_environment(), capture_output=True, text=True, timeout=60)

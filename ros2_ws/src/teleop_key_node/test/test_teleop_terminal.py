@@ -54,7 +54,7 @@ def test_typed_keys_reach_the_topics(graph, start_in_terminal):
     assert len(states) - 2 * len(pressed) >= 10, 'the state is repeated at 10 Hz'
 
     terminal.type(b'\x03')
-    assert terminal.popen.wait(5.0) == 0
+    assert terminal.popen.wait(60) == 0
     graph.expect(0.0)
     assert terminal.modes == terminal.modes_before
 
@@ -152,7 +152,7 @@ def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
     executor.add_node(graph.node)
 
     def ask(key: bytes, count: int) -> None:
-        deadline = time.monotonic() + 5.0
+        deadline = time.monotonic() + 60.0
         while len(asked) < count and time.monotonic() < deadline:
             terminal.type(key)
             for _ in range(30):

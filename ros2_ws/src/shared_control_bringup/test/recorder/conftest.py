@@ -59,7 +59,7 @@ class Recorder:
 
     def wait(self) -> tuple[int, str]:
         """Exit code and stderr of a recorder that ends by itself."""
-        _, errors = self.process.communicate(timeout=15)
+        _, errors = self.process.communicate(timeout=60)
         return self.process.returncode, errors
 
 
@@ -98,7 +98,7 @@ class Traffic:
 
     def wait_for_recorder(self) -> None:
         """Wait until a recorder that was not there before subscribes to every topic."""
-        deadline = time.monotonic() + 15
+        deadline = time.monotonic() + 60.0
         for topic in self._publishers:
             while not (new := self._subscribers(topic) - self._seen):
                 assert time.monotonic() < deadline, f'no recorder subscribes to {topic}'
@@ -128,7 +128,7 @@ class Traffic:
 
     def run_until(self, done: Callable[[], bool]) -> None:
         """Publish at the rates of a session until something has happened."""
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 60.0
         while not done():
             assert time.monotonic() < deadline
             self.run(0.25)
