@@ -40,7 +40,11 @@ def main() -> int:
         faults = [faults[args.only]]
     with tempfile.TemporaryDirectory() as scratch, free_domain() as domain:
         campaign = Campaign(faults, args.keep or Path(scratch), domain, lambda line: print(line, flush=True))
-        outcomes = campaign.run(time.monotonic() + 60 * args.minutes)
+        try:
+            campaign.run(time.monotonic() + 60 * args.minutes)
+        except KeyboardInterrupt:
+            print('interrupted: what follows is of the sessions that had ended')
+    outcomes = campaign.outcomes
     print(table(outcomes))
     print(f'{len(outcomes)} of {len(faults)} faults, {sum(len(o.violations) for o in outcomes)} violations')
     args.output.parent.mkdir(parents=True, exist_ok=True)

@@ -88,7 +88,7 @@ def _slope(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
 
 
 def soak(minutes: float, every: float, folder: Path, domain: int) -> list[Sample]:
-    """Samples of a session of so many minutes, taken every ``every`` minutes."""
+    """Samples of a session of so many minutes, taken every ``every`` minutes; an interrupt ends it early."""
     observer = Observer(domain)
     diagnostics = observer.listen(contract.DIAGNOSTICS, 100)
     log = (folder / 'session.log').open('w')
@@ -113,6 +113,8 @@ def soak(minutes: float, every: float, folder: Path, domain: int) -> list[Sample
                 print('  '.join(f'{name} {value:.2f}' if isinstance(value, float) else f'{value:24}'
                                 for name, value in asdict(sample).items() if value), flush=True)
             samples += fresh
+    except KeyboardInterrupt:
+        print('interrupted')
     finally:
         session.close()
         observer.close()
@@ -140,7 +142,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder, free_domain() as domain:
         samples = soak(args.minutes, args.every, Path(folder), domain)
     found = growth(samples)
-    print('\n'.join(found) or f'nothing grows in {args.minutes:g} minutes')
+    print('\n'.join(found) or f'nothing grows in {samples[-1].minute if samples else 0.0:g} minutes')
     args.output.parent.mkdir(parents=True, exist_ok=True)
     args.output.write_text(json.dumps({'growth': found, 'samples': [asdict(sample) for sample in samples]}, indent=2))
     print(f'written to {args.output}')

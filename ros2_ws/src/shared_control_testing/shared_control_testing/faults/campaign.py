@@ -82,7 +82,10 @@ class Campaign:
         self._parameters.write_text(PARAMETERS)
 
     def run(self, deadline: float = float('inf')) -> list[Outcome]:
-        """All faults, or those that begin before ``deadline`` (``time.monotonic()``)."""
+        """All faults, or those that begin before ``deadline`` (``time.monotonic()``).
+
+        An interrupt ends the session that runs; :attr:`outcomes` has those of the sessions before it.
+        """
         number = 0
         while self._waiting and time.monotonic() < deadline:
             number += 1
