@@ -28,6 +28,7 @@ from shared_control.seeds import episode_seed
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task, settled
 from shared_control.teaching.families import FAMILIES
+from shared_control.teaching.individual import Individual
 from shared_control.teaching.profiles import PROFILES
 from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
 from shared_control_sim.local_plant import LocalPlant
@@ -42,7 +43,8 @@ def run(args: argparse.Namespace) -> int:
     """Measure and print; the exit code."""
     if args.individuals < 1:
         raise ValueError(f'--individuals is {args.individuals}, expected at least 1')
-    tutors = args.tutors or [name for name in TUTOR_NAMES if args.device == 'keys' or name in FAMILIES]
+    tutors = args.tutors or [name for name in TUTOR_NAMES
+                             if args.device == 'keys' or isinstance(tutor_named(name), Individual)]
     for name in tutors:
         make_tutor(tutor_named(name), BALANCE, hand=args.device)
     task = load(TASKS, args.task)()

@@ -67,6 +67,6 @@ def make_tutor(who: Who, task: 'Task', seed: int = 0, episodes: int = 0, hand: s
     from .tutor import SimulatedTutor
     if isinstance(who, TutorProfile):
         if hand != 'keys':
-            raise ValueError(f'a profile knows keys alone; a family can have a {hand}: {", ".join(FAMILIES)}')
+            raise ValueError(f'profiles, and the family predictive, know keys alone: a {hand} is for other families')
         return SimulatedTutor(who, seed, episodes, task)
     return (StickTutor if hand == 'stick' else IndividualTutor)(who, seed, episodes, task)
