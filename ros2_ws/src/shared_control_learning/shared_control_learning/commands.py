@@ -67,8 +67,8 @@ def add_tutors(commands: argparse._SubParsersAction) -> None:
         'its own. Families marked "tuning" may be used to choose settings; results are of those held out.',
         examples=['shared-control tutors', 'shared-control tutors expert low --individuals 24 --task plate'])
     parser.add_argument('tutors', nargs='*', metavar='NAME', default=None,
-                        help=f'profiles and families: {", ".join(TUTOR_NAMES)} (default: all; with a stick those who can '
-                             'have one)')
+                        help=f'profiles and families: {", ".join(TUTOR_NAMES)} (default: all; with a stick those who '
+                             'can have one)')
     parser.add_argument('--individuals', type=int, default=12, metavar='N', help='individuals of each')
     parser.add_argument('--task', choices=names(TASKS), default='balance', help='what they do')
     parser.add_argument('--device', choices=HANDS, default=HANDS[0],

@@ -26,7 +26,8 @@ def tutors(monkeypatch, tmp_path):
     """``tutors(*arguments)``: the exit code, and what it writes as JSON, by name."""
     def run(*arguments):
         file = tmp_path / 'tutors.json'
-        monkeypatch.setattr('sys.argv', ['shared-control', 'tutors', '--individuals', '1', '--json', str(file), *arguments])
+        command = ['shared-control', 'tutors', '--individuals', '1', '--json', str(file), *arguments]
+        monkeypatch.setattr('sys.argv', command)
         if code := main():
             return code, {}
         return code, {row['tutor']: row for row in json.loads(file.read_text())['tutors']}
