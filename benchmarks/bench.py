@@ -1,9 +1,11 @@
 """All measurements, printed and written as JSON: ``make bench``.
 
+    python benchmarks/bench.py                   # what `make bench` runs
+    python benchmarks/bench.py --only page       # a key in the browser until it counts
+
 The machines this runs on differ and are shared: compare the ratios, which are taken within one run.
 """
 
-import argparse
 import json
 import platform
 import traceback
@@ -11,6 +13,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from shared_control.command_line import script_parser
 from shared_control.files import write_atomically
 
 MEASUREMENTS = {'headless': 'headless', 'graph': 'graph', 'start': 'start', 'end': 'end', 'page': 'page',
@@ -22,9 +25,10 @@ MISSING = 'missing'
 
 def main() -> int:
     """Entry point; the exit code: 0, or 1 when a measurement failed."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--output', type=Path, default=Path('out/bench.json'))
-    parser.add_argument('--only', choices=tuple(MEASUREMENTS), help='one measurement instead of all')
+    parser = script_parser(__doc__)
+    parser.add_argument('--output', type=Path, default=Path('out/bench.json'), metavar='FILE',
+                        help='file for the figures')
+    parser.add_argument('--only', choices=tuple(MEASUREMENTS), help='one measurement (default: all)')
     args = parser.parse_args()
     results: dict[str, Any] = {'machine': {'python': platform.python_version(), 'platform': platform.platform()}}
     args.output.parent.mkdir(parents=True, exist_ok=True)

@@ -8,13 +8,13 @@ Each policy is taught by the simulated expert until it is skilled, and then has 
 with the same ball starts, in both.
 """
 
-import argparse
 import json
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, names
 from shared_control.tasks.task import settled
@@ -66,10 +66,11 @@ def row(task: str, trained_in: str, runs: list[dict[str, Any]]) -> str:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--tasks', nargs='+', choices=names(TASKS), default=['balance'])
-    parser.add_argument('--seeds', type=int, default=5)
-    parser.add_argument('--output', type=Path, default=Path('out/engines'))
+    parser = script_parser(__doc__)
+    parser.add_argument('--tasks', nargs='+', choices=names(TASKS), default=['balance'], help='what is learned')
+    parser.add_argument('--seeds', type=int, default=5, metavar='N', help='policies of each kind')
+    parser.add_argument('--output', type=Path, default=Path('out/engines'), metavar='FOLDER',
+                        help='folder of the policies')
     args = parser.parse_args()
     print('| task | trained in | episodes to skilled | in PyBullet: succeed; off, mm | in MuJoCo | other verdicts '
           '| an episode differs by, mm: median, most |\n|---|---|---|---|---|---|---|')

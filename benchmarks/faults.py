@@ -12,7 +12,6 @@ time-out, the sum that of its parts, the bag readable by rosbags and mcap with a
 and bag agree, a report.
 """
 
-import argparse
 import json
 import sys
 import tempfile
@@ -21,19 +20,21 @@ from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 
+from shared_control.command_line import script_parser
 from shared_control_testing.faults import Campaign, Outcome, draw
 from shared_control_testing.nodes import free_domain
 
 
 def main() -> int:
     """Entry point; the exit code is 1 when something does not hold."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--faults', type=int, default=200, help='how many (default: %(default)s)')
-    parser.add_argument('--seed', type=int, default=0, help='of what is drawn (default: %(default)s)')
-    parser.add_argument('--minutes', type=float, default=45.0, help='begin no fault after that (default: %(default)s)')
-    parser.add_argument('--only', type=int, metavar='NUMBER', help='the fault of this number alone')
+    parser = script_parser(__doc__)
+    parser.add_argument('--faults', type=int, default=200, metavar='N', help='how many')
+    parser.add_argument('--seed', type=int, default=0, metavar='N', help='seed of what is drawn')
+    parser.add_argument('--minutes', type=float, default=45.0, metavar='MIN', help='begin no fault after that')
+    parser.add_argument('--only', type=int, metavar='N', help='the fault of this number alone (default: all)')
     parser.add_argument('--keep', type=Path, metavar='FOLDER', help='keep the sessions there (default: thrown away)')
-    parser.add_argument('--output', type=Path, default=Path('out/faults.json'), help='default: %(default)s')
+    parser.add_argument('--output', type=Path, default=Path('out/faults.json'), metavar='FILE',
+                        help='file for the findings')
     args = parser.parse_args()
     faults = draw(args.seed, max(args.faults, (args.only or 0) + 1))
     if args.only is not None:

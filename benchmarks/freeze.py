@@ -8,7 +8,6 @@ With the priorities of then it freezes within seconds, and the watchdog ends it;
 round for all the minutes, while other processes want the same core. Needs root, or `ulimit -r`.
 """
 
-import argparse
 import json
 import os
 import signal
@@ -16,6 +15,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from shared_control.command_line import script_parser
 from shared_control.files import write_atomically
 from shared_control.processes import leave_with_the_parent
 from shared_control_testing.standstill import AS_IT_WAS, AS_NODES_HAVE_IT, run_loop
@@ -25,9 +25,11 @@ LOADS_A_CORE = 2
 
 def main() -> int:
     """Entry point; the exit code is 1 when the loop of today stands still, or that of then does not."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--minutes', type=float, default=60.0, help='default: %(default)s')
-    parser.add_argument('--output', type=Path, default=Path('out/freeze.json'), help='default: %(default)s')
+    parser = script_parser(__doc__)
+    parser.add_argument('--minutes', type=float, default=60.0, metavar='MIN',
+                        help='how long the loop of today has to come round')
+    parser.add_argument('--output', type=Path, default=Path('out/freeze.json'), metavar='FILE',
+                        help='file for the figures')
     args = parser.parse_args()
     busy = [subprocess.Popen([sys.executable, '-c', 'while True: pass'], preexec_fn=leave_with_the_parent)
             for _ in range(LOADS_A_CORE * len(os.sched_getaffinity(0)))]

@@ -12,7 +12,6 @@ the command is given again.
     python benchmarks/learning.py --conditions coached-expert-10 autonomous-10 # ten episodes each, skilled or not
 """
 
-import argparse
 import json
 import os
 from concurrent.futures import ProcessPoolExecutor
@@ -22,6 +21,7 @@ from typing import Any
 
 import numpy as np
 from scipy.stats import bootstrap
+from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.tutors import tutor_named
@@ -186,16 +186,20 @@ def tell(row: dict[str, Any]) -> None:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--conditions', nargs='+', choices=tuple(CONDITIONS), default=BY_DEFAULT)
-    parser.add_argument('--seeds', type=int, default=24)
-    parser.add_argument('--episodes', type=int, help='at most so many, if fewer than the condition has')
+    parser = script_parser(__doc__)
+    parser.add_argument('--conditions', nargs='+', choices=tuple(CONDITIONS), default=BY_DEFAULT, metavar='NAME',
+                        help=f'of {", ".join(CONDITIONS)} (default: all but thesis-*)')
+    parser.add_argument('--seeds', type=int, default=24, metavar='N', help='runs of each condition')
+    parser.add_argument('--episodes', type=int, metavar='N',
+                        help='at most so many (default: as many as the condition has)')
     parser.add_argument('--retention', action='store_true', help='20 further episodes without the tutor')
-    parser.add_argument('--jobs', type=int, default=os.cpu_count(), help='processes')
-    parser.add_argument('--output', type=Path, default=Path('out/learning'))
+    parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
+                        help='processes (default: one a core)')
+    parser.add_argument('--output', type=Path, default=Path('out/learning'), metavar='FOLDER',
+                        help='folder of the runs')
     args = parser.parse_args()
     rows = []
-    with ProcessPoolExecutor(args.jobs) as pool:
+    with ProcessPoolExecutor(args.workers) as pool:
         for name in args.conditions:
             futures = [pool.submit(run, name, seed, args.output / name / f'{seed:03}', args.episodes, args.retention)
                        for seed in range(args.seeds)]

@@ -1,10 +1,11 @@
 """Two bare rclpy processes that exchange the messages of a tick, JointState one way and torques the other.
 
 This is what the middleware costs: the same messages, quality of service and way of receiving as the graph, and no
-physics and no controller. Run without arguments, it starts its own answering process and prints JSON.
+physics and no controller. It starts its own answering process and prints JSON.
+
+    python benchmarks/pingpong.py --rounds 20000
 """
 
-import argparse
 import json
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import numpy as np
 import rclpy
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
+from shared_control.command_line import script_parser
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
@@ -54,9 +56,9 @@ def measure(rounds: int) -> list[float]:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = script_parser(__doc__)
     parser.add_argument('--answer', action='store_true', help='be the answering process')
-    parser.add_argument('--rounds', type=int, default=5000)
+    parser.add_argument('--rounds', type=int, default=5000, metavar='N', help='exchanges that are timed')
     args = parser.parse_args()
     if args.answer:
         answer()

@@ -6,12 +6,12 @@
 Bits are the same only with the pinned libraries on the same kind of processor.
 """
 
-import argparse
 import hashlib
 import json
 import sys
 from pathlib import Path
 
+from shared_control.command_line import script_parser
 from shared_control.teaching.profiles import profile
 from shared_control_learning.policy_file import load_policy
 from shared_control_learning.presets import preset
@@ -33,7 +33,7 @@ def checksum(preset_name: str, tutor: str | None, seed: int, folder: Path) -> st
 
 def main() -> int:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = script_parser(__doc__)
     parser.add_argument('--write', action='store_true', help='record them instead of comparing')
     args = parser.parse_args()
     import tempfile

@@ -7,7 +7,6 @@ slope over the minutes after the first fifth that is three times its standard er
 slope is a failure (exit code 1).
 """
 
-import argparse
 import json
 import sys
 import tempfile
@@ -17,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
+from shared_control.command_line import script_parser
 from shared_control_ros import contract
 from shared_control_testing.faults.plan import NODES
 from shared_control_testing.live_session import Session
@@ -134,10 +134,11 @@ def _ticks(diagnostics: list[DiagnosticArray]) -> tuple[float, float] | None:
 
 def main() -> int:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--minutes', type=float, default=60.0, help='default: %(default)s')
-    parser.add_argument('--every', type=float, default=1.0, metavar='MINUTES', help='a sample (default: %(default)s)')
-    parser.add_argument('--output', type=Path, default=Path('out/soak.json'), help='default: %(default)s')
+    parser = script_parser(__doc__)
+    parser.add_argument('--minutes', type=float, default=60.0, metavar='MIN', help='how long the session lasts')
+    parser.add_argument('--every', type=float, default=1.0, metavar='MIN', help='time between two samples')
+    parser.add_argument('--output', type=Path, default=Path('out/soak.json'), metavar='FILE',
+                        help='file for the figures')
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, free_domain() as domain:
         samples = soak(args.minutes, args.every, Path(folder), domain)

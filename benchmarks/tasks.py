@@ -12,7 +12,6 @@
 Skilled: 19 of 20 randomised episodes, in two tests in a row. All tutors are simulated.
 """
 
-import argparse
 import json
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import solve_discrete_are
+from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, load
 from shared_control.seeds import episode_seed
@@ -161,10 +161,11 @@ def row(name: str, results: list[dict[str, Any]]) -> str:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--conditions', nargs='+', choices=CONDITIONS, default=CONDITIONS)
-    parser.add_argument('--seeds', type=int, default=24)
-    parser.add_argument('--output', type=Path, default=Path('out/tasks'))
+    parser = script_parser(__doc__)
+    parser.add_argument('--conditions', nargs='+', choices=CONDITIONS, default=CONDITIONS, metavar='NAME',
+                        help=f'of {", ".join(CONDITIONS)} (default: all)')
+    parser.add_argument('--seeds', type=int, default=24, metavar='N', help='runs of each condition')
+    parser.add_argument('--output', type=Path, default=Path('out/tasks'), metavar='FOLDER', help='folder of the runs')
     parser.add_argument('--table', action='store_true', help='run nothing: print what there is')
     args = parser.parse_args()
     results: dict[str, list[dict[str, Any]]] = {name: [] for name in args.conditions}

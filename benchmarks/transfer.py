@@ -9,7 +9,6 @@ that is stopped goes on when the command is given again.
     python benchmarks/transfer.py out/learning/guided-expert --all --no-teaching
 """
 
-import argparse
 import json
 import os
 from concurrent.futures import ProcessPoolExecutor
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.teaching.tutors import make_tutor, tutor_named
@@ -102,15 +102,17 @@ def tell(change: str, results: list[dict[str, Any]]) -> None:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('folders', type=Path, nargs='+', help='of conditions of benchmarks/learning.py')
+    parser = script_parser(__doc__)
+    parser.add_argument('folders', type=Path, nargs='+', metavar='FOLDER',
+                        help='of a condition of benchmarks/learning.py')
     parser.add_argument('--all', action='store_true', help='every change of "shared-control evaluate"')
-    parser.add_argument('--tutor', default='expert', help='profile or family that teaches again (default: %(default)s)')
+    parser.add_argument('--tutor', default='expert', metavar='NAME', help='profile or family that teaches again')
     parser.add_argument('--no-teaching', action='store_true', help='tests alone')
-    parser.add_argument('--jobs', type=int, default=os.cpu_count(), help='processes')
+    parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
+                        help='processes (default: one a core)')
     args = parser.parse_args()
     changes = [change.name for change in CHANGES] if args.all else ASKED
-    with ProcessPoolExecutor(args.jobs) as pool:
+    with ProcessPoolExecutor(args.workers) as pool:
         for folder in args.folders:
             runs = sorted(path.parent for path in folder.glob(f'*/{POLICY_NAME}'))
             print(f'{folder}: {len(runs)} policies; the tutor is simulated')

@@ -1,10 +1,12 @@
-"""One style of help for all commands: plain text, defaults shown, examples that work, one name for a thing."""
+"""One style of help for commands and scripts: plain text, defaults shown, examples that work, one name for a thing."""
 
 import argparse
+import importlib.util
 import re
 import shlex
 import sys
 from collections import defaultdict
+from pathlib import Path
 
 import pytest
 from shared_control.cli import known_commands
@@ -14,6 +16,11 @@ DIFFERENT = {
     '--output': ('FOLDER', 'PATH', 'FILE'),  # what is written differs: a folder, or one file
 }
 """Metavars of options that may differ between commands."""
+
+
+ROOT = Path(__file__).parents[1]
+SCRIPTS = [path for folder in ('benchmarks', 'tools') for path in sorted((ROOT / folder).glob('*.py'))
+           if 'parse_args' in path.read_text()]
 
 
 def subcommands():
@@ -61,6 +68,41 @@ def test_examples_parse(name):
         program, command, *arguments = shlex.split(line)
         assert program == 'shared-control'
         assert PARSERS[command].parse_args(arguments).run
+
+
+class _Asked(Exception):
+    """A script has made its parser."""
+
+
+def parser_of(script, monkeypatch):
+    """The parser of a script that is run by its path."""
+    def ask(parser, *_):
+        raise _Asked(parser)
+    monkeypatch.syspath_prepend(script.parent)
+    spec = importlib.util.spec_from_file_location(f'script_{script.stem}', script)
+    module = importlib.util.module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, module)
+    spec.loader.exec_module(module)
+    with monkeypatch.context() as patch:
+        patch.setattr(argparse.ArgumentParser, 'parse_args', ask)
+        with pytest.raises(_Asked) as asked:
+            module.main()
+    return asked.value.args[0]
+
+
+@pytest.mark.parametrize('script', SCRIPTS, ids=lambda path: path.stem)
+def test_a_script_has_the_same_style(script, monkeypatch):
+    parser = parser_of(script, monkeypatch)
+    for action in parser._actions:
+        test_an_option_has_help_and_shows_its_default(parser, action)
+    assert not re.search(r'``|`|SUPPRESS|None', parser.format_help())
+    first, *lines = parser.epilog.splitlines()
+    assert first == EXAMPLES and lines
+    for line in lines:
+        _, called, arguments = line.partition(f'python {script.relative_to(ROOT)}')
+        if called:
+            parser.parse_args(shlex.split(arguments, comments=True))
+    assert any(str(script.relative_to(ROOT)) in line for line in lines)
 
 
 def test_one_name_means_one_thing():

@@ -174,3 +174,20 @@ def test_the_wheel_is_whole(tmp_path):
         r"'(\S+) = \S+:main'", (package / 'setup.py').read_text())}
     assert set(re.findall(r'^(\S+) --help: ok$', done.stdout, re.MULTILINE)) == scripts
     assert 'the Python of README.md: ok' in done.stdout
+
+
+@pytest.mark.parametrize('package', PACKAGES, ids=lambda package: package.name)
+def test_files_are_read_and_written_alike_whatever_the_locale_says(package):
+    """A report ended in "'ascii' codec can't decode" where the locale was not of UTF-8."""
+    said = []
+    for path in package.glob(f'{package.name}/**/*.py') if package.name != 'shared_control_testing' else ():
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            named = {keyword.arg for keyword in node.keywords}
+            mode = next((argument.value for argument in node.args if isinstance(argument, ast.Constant)), '')
+            is_text = node.func.attr in ('read_text', 'write_text') or (
+                node.func.attr == 'open' and (mode in ('r', 'w', 'a', 'x') or 'newline' in named))
+            if is_text and 'encoding' not in named:
+                said.append(f'{path.relative_to(ROOT)}:{node.lineno}')
+    assert said == [], "encoding='utf-8' is missing"

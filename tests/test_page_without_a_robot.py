@@ -42,6 +42,7 @@ class TestTheKeyboard:
     def test_without_webgl_it_says_so_and_goes_on(self, browser):
         assert 'cannot draw in 3D' in browser.text('scene')
         assert browser.text('doing') == 'Waiting for the robot …'
+        assert browser.barriers() == [] == browser.nameless()
 
     @pytest.mark.parametrize(('name', 'key'), [
         ('left', {'key': 'a', 'code': 'KeyQ', 'windowsVirtualKeyCode': 65}),  # a French keyboard

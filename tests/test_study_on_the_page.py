@@ -93,6 +93,8 @@ def test_a_participant_teaches_is_asked_and_leaves(study, browser, tmp_path):
     participant.waits_for('Practice')
     browser.wait(lambda: browser.text('role') == 'you teach', 'the seat')
     assert not browser.part('human-moment').is_displayed(), 'feedback: none'
+    assert not browser.driver.find_elements('css selector', '[data-part=judge]'), 'verdicts: false'
+    browser.type('g')
     browser.type(Keys.ENTER)
     participant.waits_for('Teach')
     browser.wait(lambda: browser.part('sure').is_displayed() or browser.part('finish').click(), 'the question')
@@ -109,7 +111,8 @@ def test_a_participant_teaches_is_asked_and_leaves(study, browser, tmp_path):
     progress = json.loads((person / 'progress.json').read_text())
     assert progress['tlx']['coached'] == dict.fromkeys(progress['tlx']['coached'], 55.0)
     assert progress['before'] == {'age': 'under 40'} and progress['practice']['met'] is True
-    assert json.loads((person / 'coached' / 'settings.json').read_text())['feedback'] == 'none'
+    settings = json.loads((person / 'coached' / 'settings.json').read_text())
+    assert (settings['feedback'], settings['verdicts']) == ('none', False)
 
     participant.chooses('Go on')
     participant.waits_for('Practice')

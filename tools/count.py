@@ -1,18 +1,20 @@
 """The size of the code, and what in it is tied to one task or one robot: at a commit and now.
 
-    python tools/count.py [--since REV] [--json FILE]
+    python tools/count.py
+    python tools/count.py --since HEAD~20 --list
 
 A module counts as tied to the task when it names the axis of ``balance`` or numbers of its tray, to the robot when it
 names the Panda's joints, and lies outside the folder that is about just that. ``--list`` names the modules.
 """
 
-import argparse
 import json
 import re
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
+
+from shared_control.command_line import script_parser
 
 FIRST_VERSION = 'ec71391'
 SOURCES = 'ros2_ws/src/'
@@ -63,10 +65,12 @@ def now() -> dict:
 
 def main() -> int:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--since', default=FIRST_VERSION, metavar='REV', help='default: %(default)s, the first version')
+    parser = script_parser(__doc__)
+    parser.add_argument('--since', default=FIRST_VERSION, metavar='REV',
+                        help='commit to compare with (default: the first version)')
     parser.add_argument('--list', action='store_true', help='name the modules that are tied')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write all figures there')
+    parser.add_argument('--json', type=Path, metavar='FILE',
+                        help='write all figures to this file (default: not written)')
     args = parser.parse_args()
     before, after = at(args.since), now()
     print(f'{"":24} {args.since:>8} {"now":>8}')

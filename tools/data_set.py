@@ -7,7 +7,6 @@ process, without a graph, at the policy's rate: bags have a sample every 20 ms, 
 recorder's, and the same command gives the same bytes (SHA256SUMS). The data card (README.md) says what is in it.
 """
 
-import argparse
 import hashlib
 import json
 from dataclasses import replace
@@ -17,6 +16,7 @@ from typing import Any
 import numpy as np
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
+from shared_control.command_line import script_parser
 from shared_control.contract import Topic
 from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantState
@@ -186,8 +186,8 @@ The tutors are models of the literature and were not fitted to people.
 
 def main() -> None:
     """Make the set."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('output', type=Path, help='new folder')
+    parser = script_parser(__doc__)
+    parser.add_argument('output', type=Path, metavar='FOLDER', help='new folder')
     parser.add_argument('--quick', action='store_true', help='one session of each task, two episodes of 2 s')
     args = parser.parse_args()
     if args.output.exists():

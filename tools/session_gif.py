@@ -6,13 +6,13 @@ Shows the first and the last taught episode, and the robot's first test alone, s
 its ball (tilt drawn as it was), and the two moments that the controller used.
 """
 
-import argparse
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
+from shared_control.command_line import script_parser
 from shared_control.robot.model import RobotModel, pitch
 from shared_control_records.bag.ball_tracks import EpisodeTrack, episode_tracks
 from shared_control_records.bag.reader import Bag, read_bag
@@ -66,9 +66,9 @@ class Scene:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('session', type=Path, help='folder of a session with the task balance')
-    parser.add_argument('picture', type=Path)
+    parser = script_parser(__doc__)
+    parser.add_argument('session', type=Path, metavar='SESSION', help='folder of a session with the task balance')
+    parser.add_argument('picture', type=Path, metavar='FILE', help='the moving picture, a GIF')
     args = parser.parse_args()
     bag = read_bag(args.session / 'bag')
     tracks = episode_tracks(bag)

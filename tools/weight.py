@@ -1,11 +1,12 @@
 """What the 1 kHz controller costs the robot's computer: installs it alone, counts, and lets it answer a mock robot.
 
+    python tools/weight.py --output out/weight.json        # what `make weight` runs
+
 Makes an empty environment, installs just what torque_ctrl_node needs (``pip install .[ros]``), prints the packages with
 their sizes, and starts the controller from there beside a mock robot of this environment. Exit code 1 when something
 heavy came along or when the controller does not answer.
 """
 
-import argparse
 import json
 import shutil
 import subprocess
@@ -13,6 +14,8 @@ import sys
 import tempfile
 import venv
 from pathlib import Path
+
+from shared_control.command_line import script_parser
 
 ROOT = Path(__file__).parents[1]
 HEAVY = ('torch', 'stable-baselines3', 'pybullet', 'mujoco', 'pandas', 'matplotlib', 'nicegui')
@@ -69,8 +72,9 @@ def answers(python: Path) -> int:
 
 def main() -> int:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--output', type=Path, default=Path('out/weight.json'), help='default: %(default)s')
+    parser = script_parser(__doc__)
+    parser.add_argument('--output', type=Path, default=Path('out/weight.json'), metavar='FILE',
+                        help='file for the figures')
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         python = install(Path(folder))

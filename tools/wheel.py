@@ -12,7 +12,6 @@ sdist alone is installed with what the core needs.
 the tutorial's.
 """
 
-import argparse
 import os
 import re
 import shutil
@@ -21,6 +20,8 @@ import sys
 import tarfile
 import tempfile
 from pathlib import Path
+
+from shared_control.command_line import script_parser
 
 ROOT = Path(__file__).parents[1]
 README, TUTORIAL = ROOT / 'README.md', ROOT / 'docs' / 'tutorial' / 'first_policy.md'
@@ -108,9 +109,11 @@ def check_quickly(work: Path, output: Path) -> None:
 
 def main() -> None:
     """Entry point."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--output', type=Path, default=ROOT / 'dist', help='where sdist and wheel go')
-    parser.add_argument('--python', default=sys.executable, help='the interpreter to build and install with')
+    parser = script_parser(__doc__)
+    parser.add_argument('--output', type=Path, default=ROOT / 'dist', metavar='FOLDER',
+                        help='where sdist and wheel go (default: dist)')
+    parser.add_argument('--python', default=sys.executable, metavar='PYTHON',
+                        help='the interpreter to build and install with (default: this one)')
     parser.add_argument('--quick', action='store_true', help='install the wheel alone, beside what is installed here')
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:

@@ -107,8 +107,11 @@ class GraphPlant:
         self._publish(agent)
         ball = self._next_ball()
         step_ns = to_ns(ball.header.stamp) - self._stamp_ns
-        if not 0 < step_ns <= GAP_NS:
-            raise PlantInterrupted(f'the stamps on {self._balls.topic_name} jumped by {step_ns * 1e-9:.3f} s')
+        if step_ns <= 0:
+            raise PlantInterrupted(f'the stamps on {self._balls.topic_name} went back by {-step_ns * 1e-9:.3f} s')
+        if step_ns > GAP_NS:
+            raise PlantInterrupted(f'nothing on {self._balls.topic_name} for {step_ns * 1e-9:.1f} s of its time: this '
+                                   'machine is too busy')
         self.late_steps += step_ns // PERIOD_NS - 1
         return self._read(ball)
 
@@ -186,7 +189,8 @@ class GraphPlant:
                     return joint_positions(deserialize_message(serialized, contract.JOINT_STATES.msg_type), self.spec)
                 except ValueError as error:
                     raise PlantInterrupted(f'{self._joints.topic_name}: {error}') from error
-        raise PlantInterrupted(f'no {self._joints.topic_name} with the stamp of {self._balls.topic_name}')
+        raise PlantInterrupted(f'no {self._joints.topic_name} within {JOINTS_SECONDS:g} s of '
+                               f'{self._balls.topic_name}: this machine is too busy')
 
     def close(self) -> None:
         """Leave no moment behind."""

@@ -184,7 +184,7 @@ class PpoAgentNode(Callbacks):
                 self._test()
             self._training.enter('done')
         except _Stopped:
-            self._break_off()
+            self._break_off('the session was stopped')
             self.node.get_logger().info(f'stopped; {self._learner.episode} episodes are learned and kept')
 
     def _wait(self) -> None:
@@ -348,20 +348,20 @@ class PpoAgentNode(Callbacks):
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""
         self.node.get_logger().warning(f'the episode is void: {error}')
-        self._break_off()
+        self._break_off(str(error))
         again = time.monotonic() + TRY_AGAIN_SECONDS  # whatever is the matter may last
         while time.monotonic() < again:
             time.sleep(0.1)
             self._attend()
         self._wait()
 
-    def _break_off(self) -> None:
+    def _break_off(self, reason: str) -> None:
         """What is under way is not learned from, but a person has taught for as long."""
         episode, self._episode = self._episode, None
         if episode is not None and episode.phase == 'teach':
             self._seconds_left -= len(episode) * POLICY_PERIOD
             if self._table is not None:
-                self._table.break_off(episode)
+                self._table.break_off(episode, reason)
 
     def close(self) -> None:
         """Leave no moment behind, and see to it that the last words arrive."""

@@ -95,6 +95,7 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert read_description(output / 'policy.safetensors')['episode'] == 1
     void, taught = read_rows(output / 'episodes.csv')
     assert (void['episode'], void['phase'], taught['phase']) == ('1', BROKEN_OFF, 'teach')
+    assert 'the simulator was started anew' in void['reason'] and not taught['reason']
     assert 0.5 <= float(void['seconds']) < 5.0 == float(taught['seconds'])
 
     left.clear()
@@ -113,6 +114,7 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     rows = read_rows(output / 'episodes.csv')
     assert [(r['episode'], r['phase']) for r in rows] == [
         ('1', BROKEN_OFF), ('1', 'teach'), ('2', BROKEN_OFF), ('2', BROKEN_OFF)]
+    assert [r['reason'] for r in rows[2:]] == ['the learner was killed', 'the session was stopped']
     assert [float(r['seconds']) >= at_least for r, at_least in zip(rows[2:], (1.0, 0.5), strict=True)] == [True, True]
 
 

@@ -56,6 +56,20 @@ def make_parser(description: str, examples: Sequence[str], *, prog: str | None =
     return parser
 
 
+def script_parser(doc: str) -> argparse.ArgumentParser:
+    """A parser of a script that is run by its path, from its docstring, of which a paragraph is indented: examples.
+
+    Raises:
+        ValueError: none is.
+    """
+    paragraphs = doc.strip('\n').split('\n\n')
+    examples = [part for part in paragraphs if part.startswith('    ')]
+    if not examples:
+        raise ValueError('the docstring of a script needs an indented paragraph: examples')
+    about = '\n\n'.join(part for part in paragraphs if part not in examples).replace('`', '')
+    return make_parser(about, [line.strip().replace('`', '') for part in examples for line in part.splitlines()])
+
+
 def add_parser(commands: argparse._SubParsersAction, name: str, run: Callable[[argparse.Namespace], int], *,
                summary: str, description: str, examples: Sequence[str]) -> argparse.ArgumentParser:
     """Add a command to ``shared-control``, and give its parser, for its options.

@@ -36,7 +36,7 @@ def starter() -> str:
     """
     parent = os.getppid()
     try:
-        started = Path(f'/proc/{parent}/stat').read_text().rpartition(')')[2].split()[19]
+        started = Path(f'/proc/{parent}/stat').read_text(encoding='utf-8').rpartition(')')[2].split()[19]
     except (OSError, IndexError):
         started = ''
     return f'{parent} {started}'

@@ -93,7 +93,8 @@ class RunFolder:
                     self.path, self._kind)
         except BlockingIOError as error:
             file.close()
-            raise RunFolderError(f'the {self._kind} folder {self.path} is in use by another {self._kind}') from error
+            raise RunFolderError(f'the {self._kind} folder {self.path} is in use by another {self._kind}: wait for its '
+                                 'end, or choose another folder') from error
         except OSError as error:
             file.close()
             raise self._cannot_write(error) from error

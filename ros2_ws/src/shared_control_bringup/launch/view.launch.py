@@ -46,7 +46,7 @@ def generate_launch_description() -> LaunchDescription:
         *environment(),
         in_namespace([
             Node(package='robot_state_publisher', executable='robot_state_publisher',
-                 parameters=[{'robot_description': panda().urdf.read_text()}, clock],
+                 parameters=[{'robot_description': panda().urdf.read_text(encoding='utf-8')}, clock],
                  remappings=[('joint_states', joints)], respawn=True, respawn_delay=RESPAWN_DELAY),
             graph_node('robot_view_node', parameters={'arm': False, **clock},
                        remappings=[('joint_states_throttle', joints)]),

@@ -15,6 +15,7 @@
 """What comes after the teaching: the test of the policy alone, and a word to the person."""
 
 import json
+import shlex
 import sys
 from collections.abc import Callable
 
@@ -101,3 +102,4 @@ def tell_summary(folder: SessionFolder, summary: Summary) -> None:
     print(f'picture            {folder.picture}')
     print(f'report             {folder.report}')
     print(f'everything         {folder.path}')
+    print(f'watch it again     shared-control replay {shlex.quote(str(folder.path))}')

@@ -95,13 +95,13 @@ NODES = (
     SessionNode('teleop_key_node', lambda s: {
         'task': _of_the_task(s.settings)['task'],
         'screen': 'auto' if s.shows_screen else 'off', 'in_session': True,
-        'feedback': s.settings.feedback}, Role.FOREGROUND),
+        'feedback': s.settings.feedback, 'verdicts': s.settings.verdicts}, Role.FOREGROUND),
     SessionNode('sim_tutor_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'profile': s.settings.profile,
         'seed': s.settings.seed}, tutor='sim'),
     SessionNode('teach_page_node', lambda s: {
         'task': _of_the_task(s.settings)['task'], 'host': s.settings.page[0], 'port': s.settings.page[1],
-        'session': str(s.folder.path), 'feedback': s.settings.feedback,
+        'session': str(s.folder.path), 'feedback': s.settings.feedback, 'verdicts': s.settings.verdicts,
         'shows_result': not s.settings.blind}, Role.STOPPER, tutor='page'),
     SessionNode('ppo_agent_node', lambda s: {
         'task': s.settings.task, 'preset': s.settings.preset, 'seed': s.settings.seed, 'episodes': s.settings.episodes,

@@ -172,7 +172,8 @@ class NodeProcess:
     def held_by(self) -> str:
         """What keeps it from running, in words; empty: nothing does."""
         try:
-            return HELD.get(Path(f'/proc/{self.pid}/stat').read_text().rpartition(')')[2].split()[0], '')
+            content = Path(f'/proc/{self.pid}/stat').read_text(encoding='utf-8')
+            return HELD.get(content.rpartition(')')[2].split()[0], '')
         except (OSError, IndexError):
             return ''
 
@@ -199,6 +200,7 @@ class NodeProcess:
 
     def last_error(self) -> str:
         """The last line it wrote that says something."""
-        lines = [line.strip() for line in self.log.read_text(errors='replace').splitlines() if line.strip()]
+        text = self.log.read_text(encoding='utf-8', errors='replace')
+        lines = [line.strip() for line in text.splitlines() if line.strip()]
         errors = [line for line in lines if 'error' in line.lower()]
         return (errors or lines or ['no output'])[-1]

@@ -66,6 +66,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add('--feedback', 'what a person is told while teaching. none: what they see. ball: how each episode ended. full: '
         f"and the robot's push, human share, score and tests (default: {default.feedback}; with --blind: ball)",
         choices=FEEDBACK)
+    add('--verdicts', 'offer keys that call the last episode good, bad or discarded; --no-verdicts: offer none '
+        '(default: --verdicts; with --blind: --no-verdicts)', action=argparse.BooleanOptionalAction)
     add('--blind', 'tell the person neither condition and folder nor what came of the session, as a study does',
         action='store_true')
     add('--output', 'folder of the session (default: a new one below out/sessions)', type=Path, metavar='FOLDER')

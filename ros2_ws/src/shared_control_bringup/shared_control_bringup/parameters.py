@@ -58,7 +58,7 @@ def save(parameters: dict[str, dict[str, Any]], path: Path) -> None:
 def _read(path: Path) -> dict[str, dict[str, Any]]:
     """The parameters in a file, by node."""
     try:
-        content = yaml.safe_load(path.read_text())
+        content = yaml.safe_load(path.read_text(encoding='utf-8'))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise ValueError(f'{path} is not valid YAML: {error}') from error
     if not isinstance(content, dict):

@@ -41,6 +41,7 @@ class EpisodePrinter:
             self._told += 1
             self._say(
                 f'teach {int(row["episode"]):3d}: broken off after {float(row["seconds"]):.1f} s'
+                + (f': {row["reason"]}' if row.get('reason') else '')
                 if row['phase'] == BROKEN_OFF else
                 f'{row["phase"]:>5} {int(row["episode"]):3d}: return {float(row["return"]):8.1f}, '
                 f'human share {float(row["human_share"]):4.0%}'

@@ -121,11 +121,11 @@ def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settin
     refuse_options_of_new_sessions(args)
     content = folder.read_json(folder.settings)
     if content is None:
-        raise ValueError(f'{folder.settings} is missing: it is not known how to go on')
+        raise ValueError(f'{folder.settings} is missing: it is not known how to go on; begin a new session')
     try:
         settings = Settings.from_json(content)
     except ValueError as error:
-        raise ValueError(f'cannot use {folder.settings}: {error}') from error
+        raise ValueError(f'cannot use {folder.settings}: {error}; correct it, or begin a new session') from error
     return settings.resumed_with(given_settings(args)).resolved()
 
 

@@ -68,6 +68,8 @@ class Settings:
     """Whether the person is told neither condition and folder nor what came of the session."""
     feedback: str = 'full'
     """What a person is told while they teach: one of ``FEEDBACK``."""
+    verdicts: bool = True
+    """Whether a person is offered to call an episode good, bad or discarded."""
     practice_rests: int = 0
     """Practice until the ball has been brought to rest so often; 0: until the person wants to teach."""
     practice_minutes: float = 5.0
@@ -120,8 +122,8 @@ class Settings:
         Raises:
             ValueError: see the class; or an option belongs to another tutor.
         """
-        if given.get('blind') and 'feedback' not in given:
-            given = {**given, 'feedback': 'ball'}
+        if given.get('blind'):
+            given = {'feedback': 'ball', 'verdicts': False, **given}
         changed = replace(self, **given)
         for name, tutor in (('profile', 'sim'), ('page', 'page')):
             if name in given and changed.tutor != tutor:

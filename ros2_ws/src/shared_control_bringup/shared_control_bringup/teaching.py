@@ -62,7 +62,7 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
         node.name, folder.parameters, folder.logs / f'{node.name}.log',
         in_foreground=shows_screen and node.role is Role.FOREGROUND, in_control_loop=node.role is Role.CONTROL_LOOP,
         in_real_time=paced, environment=environment.get(node.name), after=node.after) for node in nodes_of(tutor)]
-    log = (folder.logs / 'session.log').open('a')
+    log = (folder.logs / 'session.log').open('a', encoding='utf-8')
 
     def note(text: str) -> None:
         print(time.strftime('%H:%M:%S'), text, file=log, flush=True)

@@ -38,9 +38,9 @@ def test_an_episode_that_was_broken_off_and_rows_that_are_gone(tmp_path):
     printer = EpisodePrinter(path, said.append)
     path.write_text('')
     printer.poll()
-    path.write_text('episode,phase,seconds\n1,broken off,4.25\n')
+    path.write_text('episode,phase,seconds,reason\n1,broken off,4.25,\n1,broken off,1.0,it was repeated\n')
     printer.poll()
-    assert said == ['teach   1: broken off after 4.2 s']
+    assert said == ['teach   1: broken off after 4.2 s', 'teach   1: broken off after 1.0 s: it was repeated']
 
 
 def test_what_an_earlier_run_wrote_is_not_told_again(tmp_path):

@@ -111,7 +111,7 @@ def test_a_blind_session_says_neither_condition_nor_folder_and_stays_blind(sessi
     said = ''.join(capsys.readouterr())
     assert 'coached' not in said and str(folder) not in said
     page = load(folder / 'parameters.yaml')['teach_page_node']
-    assert (page['feedback'], page['shows_result']) == ('ball', False)
+    assert (page['feedback'], page['verdicts'], page['shows_result']) == ('ball', False, False)
 
 
 def test_overwriting_removes_what_a_session_writes_and_nothing_else(session, tmp_path, capsys):

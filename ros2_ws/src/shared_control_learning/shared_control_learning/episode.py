@@ -64,6 +64,8 @@ class Episode:
     """Duration of the update after the episode, s."""
     verdict: Verdict = Verdict.NONE
     """What a person has said of it."""
+    reason: str = ''
+    """Why it was broken off; empty: it was not."""
 
     def __post_init__(self) -> None:
         self.reward_terms = self.reward_terms or dict.fromkeys(self.task.reward_names, 0.0)
@@ -153,7 +155,7 @@ class Episode:
             'intervention_rate': self.intervention_rate,
             'settled_position_error': settled(np.array(self.position_error)),
             'settled_velocity': settled(np.array(self.velocity)), 'learn_seconds': self.learn_seconds,
-            'verdict': str(self.verdict)}
+            'verdict': str(self.verdict), 'reason': self.reason}
 
 
 def _magnitudes(moments: list[np.ndarray]) -> np.ndarray:

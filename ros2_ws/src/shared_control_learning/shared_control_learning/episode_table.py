@@ -31,6 +31,12 @@ UNFINISHED_NAME = 'unfinished.csv'
 """Beside it: the episode that is under way, as far as it has come."""
 BROKEN_OFF = 'broken off'
 """Phase of an episode that the learner has not learned from: repeated, stopped, or cut short by a fault."""
+KILLED = 'the learner was killed'
+"""Why an episode was broken off whose end the learner did not see."""
+LATER = ('verdict', 'reason')
+"""The last columns, which tables of earlier versions have not."""
+TEXTS = ('phase', *LATER)
+"""Columns that hold no numbers."""
 
 
 class EpisodeTable:
@@ -53,11 +59,13 @@ class EpisodeTable:
         rows = [row for row in before if row['phase'] == 'teach' and int(row['episode']) <= taught]
         if live:
             rows = [row if row['phase'] == BROKEN_OFF or int(row['episode']) <= taught or _is_discarded(row)
-                    else {**row, 'phase': BROKEN_OFF} for row in before if row['phase'] in ('teach', BROKEN_OFF)]
-            rows += [row for row in read_rows(self._unfinished) if [row] != before[-1:] and not any(
+                    else {**row, 'phase': BROKEN_OFF, 'reason': KILLED}
+                    for row in before if row['phase'] in ('teach', BROKEN_OFF)]
+            rows += [row for row in read_rows(self._unfinished) if not _is_same(row, before[-1:]) and not any(
                 other['phase'] == 'teach' and other['episode'] == row['episode'] and not _is_discarded(other)
                 for other in before)]
-        rows = [row | {'verdict': row.get('verdict', '')} for row in rows]
+        rows = [{**{name: value for name, value in row.items() if name not in LATER}, **{
+            name: row.get(name, '') for name in LATER}} for row in rows]
         self._has_header = bool(rows)
         self._last: tuple[Episode, int, int] | None = None
         """The episode appended last, and where in the file its row begins and ends."""
@@ -83,21 +91,22 @@ class EpisodeTable:
         write_atomically(self._path, content[:begin] + row + content[end:])
         self._last = episode, begin, begin + len(row)
 
-    def break_off(self, episode: Episode) -> None:
+    def break_off(self, episode: Episode, reason: str) -> None:
         """The row of an episode that will not be learned from; none when it has not begun."""
+        episode.reason = reason
         if len(episode):
             self._append({**episode.row(), 'phase': BROKEN_OFF})
 
     def under_way(self, episode: Episode) -> None:
         """Keep how far an episode has come, for the case that this process does not see its end."""
-        row = {**episode.row(), 'phase': BROKEN_OFF}
+        row = {**episode.row(), 'phase': BROKEN_OFF, 'reason': KILLED}
         with suppress(OSError):  # a full disk is an error at the episode's end
             write_atomically(self._unfinished, _csv([list(row), list(row.values())]).encode(), synced=False)
 
     def _append(self, row: dict[str, float | int | str]) -> int:
         """Write a row; gives where it ends in the file."""
         lines = _csv([list(row.values())] if self._has_header else [list(row), list(row.values())])
-        with self._path.open('a', newline='') as file:
+        with self._path.open('a', encoding='utf-8', newline='') as file:
             file.write(lines)
             file.flush()
             os.fsync(file.fileno())
@@ -105,6 +114,11 @@ class EpisodeTable:
         self._has_header = True
         self._unfinished.unlink(missing_ok=True)
         return end
+
+
+def _is_same(row: dict[str, str], last: list[dict[str, str]]) -> bool:
+    """Whether it is the last row of a table, but for the reason, which an episode under way has not had yet."""
+    return any({**other, 'reason': ''} == {**row, 'reason': ''} for other in last)
 
 
 def _is_discarded(row: dict[str, str]) -> bool:
@@ -120,12 +134,12 @@ def read_rows(path: Path) -> list[dict[str, str]]:
     if not path.exists():
         return []
     try:
-        with path.open(newline='') as file:
+        with path.open(encoding='utf-8', newline='') as file:
             rows = list(csv.DictReader(line for line in file if line.endswith('\n')))
         for row in rows:
             int(row['episode'])
             for column, value in row.items():
-                if column not in ('phase', 'verdict'):
+                if column not in TEXTS:
                     float(value)  # a row that is too short has None
     except (ValueError, KeyError, TypeError, csv.Error) as error:
         raise ValueError(f'{path} is no table of episodes: {error!r}') from error

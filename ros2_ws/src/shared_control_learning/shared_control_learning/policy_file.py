@@ -109,7 +109,7 @@ def read_description(path: Path) -> dict[str, Any]:
         PolicyFileError: there is no such file, or it has no such header.
     """
     if not path.is_file():
-        raise PolicyFileError(f'no policy file at {path}')
+        raise PolicyFileError(f'no policy file at {path}: name one that a session or train has written, {POLICY_NAME}')
     if path.stat().st_size > SIZE_MAX:
         raise PolicyFileError(f'{path} is no policy: {path.stat().st_size} bytes, at most {SIZE_MAX} are expected')
     try:
@@ -121,7 +121,8 @@ def read_description(path: Path) -> dict[str, Any]:
     except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
         raise PolicyFileError(f'{path} is no policy: {error}') from error
     if found != FORMAT:
-        raise PolicyFileError(f'{path} is no policy of this version: format {found!r}, expected {FORMAT!r}')
+        raise PolicyFileError(f'{path} is no policy of this version: format {found!r}, expected {FORMAT!r}; teach '
+                              'it anew, or use the version that wrote it')
     return description
 
 

@@ -78,7 +78,7 @@ def _claim_folder(args: argparse.Namespace) -> RunFolder:
                        marks=(RUN_NAME,))
     if args.resume:
         if not folder.holds_run:
-            raise TrainingError(f'--resume: there is no run in {args.output}')
+            raise TrainingError(f'--resume: there is no run in {args.output}: leave --resume out to begin one')
         folder.claim()
     else:
         if folder.holds_run and not args.overwrite:

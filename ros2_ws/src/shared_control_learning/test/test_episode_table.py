@@ -55,8 +55,8 @@ def kept(path):
 def test_what_a_person_taught_in_vain_is_kept_and_counts(tmp_path, episode):
     path = tmp_path / 'episodes.csv'
     table = EpisodeTable(path, live=True)
-    table.break_off(episode(1, 0.0))
-    table.break_off(episode(1, 4.0))  # repeated
+    table.break_off(episode(1, 0.0), 'not begun')
+    table.break_off(episode(1, 4.0), 'repeated')
     table.append(episode(1, 15.0))
     table.append(episode(2, 15.0))  # killed before the learner was saved
     table = EpisodeTable(path, taught=1, live=True)
@@ -75,7 +75,7 @@ def test_an_episode_that_has_its_row_is_not_kept_twice(tmp_path, episode, end):
     table = EpisodeTable(path, live=True)
     table.under_way(episode(1, 6.0))
     unfinished = (tmp_path / UNFINISHED_NAME).read_bytes()
-    getattr(table, end)(episode(1, 6.0))
+    getattr(table, end)(episode(1, 6.0), *(['stopped'] if end == 'break_off' else []))
     before = kept(path)
     (tmp_path / UNFINISHED_NAME).write_bytes(unfinished)  # killed between the one and the other
     EpisodeTable(path, taught=1, live=True)

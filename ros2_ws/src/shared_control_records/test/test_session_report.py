@@ -26,11 +26,12 @@ from mcap.writer import Writer
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.detour import Detour
 from shared_control_learning.episode import Episode
+from shared_control_learning.episode_table import BROKEN_OFF
 from shared_control_learning.evaluation.evaluate import Evaluation
 from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata, picture, report
 from shared_control_records.session.bag_report import write_bag_report
-from shared_control_records.session.episodes import read_episodes
+from shared_control_records.session.episodes import EpisodeRow, read_episodes, write_episodes
 from shared_control_records.session.final_test import load_test, save_test
 from shared_control_records.session.folder import SessionFolder
 from shared_control_records.session.report import write_report
@@ -88,7 +89,7 @@ def test_the_summary_has_the_figures(folder):
         'autonomous_success': 19, 'autonomous_episodes': 20,
         'control_rate_hz': pytest.approx(999.0), 'real_time_factor': pytest.approx(0.999),
         'tick_ms': {'p50': 0.61, 'p99': 0.93}, 'late_tick_ratio': 0.01, 'restarts': 1, 'bag_checks': [],
-        'bag': str(folder.bag), 'picture': str(folder.picture), 'report': str(folder.report)}
+        'bag': 'bag', 'picture': 'picture.png', 'report': 'report.html'}
 
 
 def test_the_report_says_what_matters_and_needs_no_other_file(folder):
@@ -97,9 +98,10 @@ def test_the_report_says_what_matters_and_needs_no_other_file(folder):
     assert page.index('The tutor was simulated') < page.index('What was done')
     assert '19 of 20 randomised episodes succeeded' in page
     assert 'Checked and found whole' in page
-    assert f'ros2 bag play {folder.bag}' in page
+    assert 'ros2 bag play bag' in page
     assert 'src="data:image/png;base64,' in page
     assert 'http' not in page
+    assert str(folder.path) not in page + folder.summary.read_text(), 'it is passed on'
     assert folder.picture.read_bytes().startswith(PNG)
     assert folder.picture.with_suffix('.pdf').read_bytes()[:4] == b'%PDF'
     assert 'shared-control' in folder.picture.with_suffix('.svg').read_text()
@@ -143,6 +145,7 @@ def test_a_bag_that_cannot_be_read_is_reported(folder):
     assert 'was not finished' in summary.bag_checks[0]
     assert summary.key_presses is None
     assert summary.autonomous_success == 19
+    assert str(folder.path) not in folder.report.read_text() + folder.summary.read_text()
 
 
 def test_a_test_is_kept_and_read_back(tmp_path):
@@ -191,7 +194,7 @@ def test_the_bag_alone_gives_the_same_report(folder, tmp_path):
     again = json.loads((page.parent / 'summary.json').read_text())
     places = ('bag', 'picture', 'report')
     assert {**again, **dict.fromkeys(places)} == {**original.as_dict(), **dict.fromkeys(places)}
-    assert '19 of 20 randomised episodes succeeded' in page.read_text()
+    assert '19 of 20 randomised episodes succeeded' in page.read_text() and str(tmp_path) not in page.read_text()
     assert (page.parent / 'picture.png').read_bytes().startswith(PNG)
 
 
@@ -272,3 +275,12 @@ def test_the_robots_time_was_set_between_episodes(tmp_path, step_s):
     made.write_settings(folder.settings)
     write_report(folder)
     assert folder.picture.read_bytes().startswith(PNG)
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_why_an_episode_was_broken_off_is_said(folder):
+    rows = read_episodes(folder.episodes)
+    write_episodes([EpisodeRow(1, BROKEN_OFF, 4.0, None, None, None, reason='the person starts it over'), *rows],
+                   folder.episodes)
+    write_report(folder)
+    assert 'Episode 1 was broken off after 4.0 s: the person starts it over.' in folder.report.read_text()

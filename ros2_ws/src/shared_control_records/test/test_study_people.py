@@ -14,6 +14,7 @@
 
 """A real participant's way through a study; the sessions are made up, questions and answers are not."""
 
+import csv
 import hashlib
 import json
 import socket
@@ -24,12 +25,16 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from shared_control.cli import main
 from shared_control_records.study.asking import TerminalAsker
 from shared_control_records.study.folder import StudyError, StudyFolder
 from shared_control_records.study.form_page import FormPage
+from shared_control_records.study.notes import read_notes
 from shared_control_records.study.people import INTERRUPTED, asker_of, lead_through, withdraw
 from shared_control_records.study.plan_file import Question
 from shared_control_records.study.progress import SCALES, Progress, ProgressError
+from shared_control_records.study_report.participants import excluded_participants, participants_table, turnout
+from shared_control_records.study_report.report import write_study_report
 
 PLAN = """
 participants:
@@ -102,7 +107,7 @@ def test_consent_practice_teaching_and_questions_in_this_order(study, answers):
         str(person / name) for name in ('coached', 'thesis')]
     for call, preset, rests in zip(sessions.calls, ('coached', 'thesis'), ('1', '0'), strict=True):
         assert call[:2] == ['--tutor', 'keyboard'] and call[6:] == [
-            '--blind', '--feedback', 'ball', '--practice-rests', rests, '--practice-minutes', '3.0',
+            '--blind', '--feedback', 'ball', '--no-verdicts', '--practice-rests', rests, '--practice-minutes', '3.0',
             '--minutes', '30.0', '--preset', preset, '--physics', 'bullet', '--sharing', 'additive',
             '--params-file', 'own.yaml']
     progress = progress_of(study)
@@ -273,3 +278,65 @@ def test_people_are_asked_where_they_teach(study):
     for wrong in ('0.0.0.0:8088', '127.0.0.1:0', '127.0.0.1'):
         with pytest.raises(ValueError):
             asker_of(people.model_copy(update={'session_options': ['--page', wrong]}))
+
+
+def test_a_terminal_breaks_lines_between_words(monkeypatch, capsys):
+    monkeypatch.setenv('COLUMNS', '30')
+    TerminalAsker().tell('A consent that is longer than the terminal is wide.\n\nStop at any time.')
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == ['A consent that is longer than', 'the terminal is wide.', '', 'Stop at any time.']
+
+
+def study_command(study, *arguments):
+    folder, _ = study
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr('sys.argv', ['shared-control', 'study', str(folder.plan), '--output', str(folder.path),
+                                   '--participant', '1', *arguments])
+        return main()
+
+
+def test_the_experimenter_notes_while_somebody_takes_part_and_leaves_them_out(study, answers, capsys):
+    folder, plan = study  # which holds the participant's lock
+    answers(*BEGINNING, '', *'123456', '', *'654321', 'Nothing.')
+    assert lead(study, Sessions())
+    assert study_command(study, '--note', 'the phone rang, "twice"') == 0
+    assert study_command(study, '--exclude', ' ') == 2 and '--exclude needs words' in capsys.readouterr().err
+    assert study_command(study, '--exclude', 'pressed with the mouse') == 0
+    assert excluded_participants(folder, plan) == {1: 'pressed with the mouse'}
+
+    rows = participants_table(folder, plan)
+    assert rows.participant.tolist() == [1, 1] and rows.position.tolist() == [1, 2]
+    assert rows.condition.tolist() == ['coached', 'thesis'] and rows.taught.all() and rows.consented.all()
+    assert rows.tlx_mental.tolist() == [1, 6] and rows.tlx.tolist() == [3.5, 3.5]
+    assert set(rows.before_age) == {'18 to 30'} and set(rows.after_comment) == {'Nothing.'}
+    assert set(rows.practice_rests) == {1} and set(rows.excluded) == {'pressed with the mouse'}
+    assert rows.notes[0].endswith('the phone rang, "twice"')
+    assert turnout(folder, plan) == (2, 1, 1, 0, 1)
+
+    assert study_command(study, '--include') == 0
+    assert excluded_participants(folder, plan) == {} and set(participants_table(folder, plan).excluded) == {''}
+    assert [note.kind for note in read_notes(folder.person(plan.participant(1)))] == ['note', 'exclude', 'include']
+    withdraw(folder, plan, plan.participant(1), 'delete')
+    assert read_notes(folder.person(plan.participant(1))) == [] and turnout(folder, plan) == (2, 1, 0, 1, 0)
+
+
+def test_what_people_said_is_a_table_before_anything_is_tested(study, answers, tmp_path):
+    folder, _ = study
+    answers(*BEGINNING, '', '1')
+    assert not lead(study, Sessions(INTERRUPTED))
+    with pytest.raises(ValueError, match=r'no run of the study .* is done yet: shared-control study does'):
+        write_study_report(folder, tmp_path / 'report')
+    with (tmp_path / 'report/data/participants.csv').open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row['condition'], row['taught'], row['tlx']) for row in rows] == [
+        ('coached', 'False', ''), ('thesis', 'False', '')]
+
+
+@pytest.mark.parametrize(('content', 'said'), [
+    ('a,b\n1,2\n', 'is damaged: its columns'), ('at,kind,text\n1,2,3,4\n', 'is damaged: its columns'),
+    ('at,kind,text\nnow,praise,good\n', "line 2: kind is 'praise', expected note")])
+def test_damaged_notes_are_named(study, content, said):
+    folder, plan = study
+    (folder.person(plan.participant(1)) / 'notes.csv').write_text(content)
+    with pytest.raises(ValueError, match=rf'notes\.csv.*{said}'):
+        excluded_participants(folder, plan)

@@ -25,7 +25,9 @@ import numpy as np
 import pytest
 from shared_control.cli import main
 from shared_control_records.study.folder import StudyFolder
+from shared_control_records.study.notes import add_note
 from shared_control_records.study.result import RESULT, TESTS
+from shared_control_records.study_report import report
 from shared_control_records.study_report.measures import away, load_study, run_table
 from shared_control_records.study_report.report import write_study_report
 from shared_control_records.study_report.statistics import Times, beats, bootstrap, improvement, iqm, sooner, survival
@@ -181,3 +183,16 @@ def test_success_on_other_arms_is_a_measure_and_a_table_by_what_was_changed(tmp_
     for row in rows:
         assert row['success'] == pytest.approx(runs[runs.condition == row['condition']].elsewhere.mean())
     assert set(runs.elsewhere) <= {0.0, 1.0}
+
+
+def test_who_is_left_out_by_the_experimenter_is_in_no_figure_and_is_named(tmp_path, monkeypatch):
+    monkeypatch.setattr(report, 'draw_all', lambda study: [])  # it takes its time
+    (tmp_path / 'plan.yaml').write_text(
+        'participants: {real: 3, consent: "Yes?"}\nconditions: {coached: {episodes: 20}}')
+    folder = made_study(tmp_path / 'study', tmp_path / 'plan.yaml')
+    add_note(folder.path / 'people' / 'p02', 'exclude', 'knew the <plan>')
+    study = load_study(folder)
+    assert [run.participant for run in study.runs] == [1, 3] and study.missing == 0
+    page = write_study_report(folder, tmp_path / 'report').read_text()
+    assert re.search(r'participant\s+2: knew the &lt;plan&gt;', page) and 'runs are done' not in page
+    assert str(tmp_path) not in page

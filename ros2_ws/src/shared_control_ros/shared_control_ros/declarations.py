@@ -57,9 +57,9 @@ def declarations_of(package: str) -> list[Declaration]:
     """As :func:`declarations`, for the package of a node."""
     spec = find_spec(package)
     assert spec is not None and spec.origin is not None, package
-    texts = [path.read_text() for path in Path(spec.origin).parent.glob('*.py')]
+    texts = [path.read_text(encoding='utf-8') for path in Path(spec.origin).parent.glob('*.py')]
     shared = {name for text in texts for name in re.findall(r'shared_control_ros\.(\w+_parameter) import', text)}
-    texts += [(SHARED / f'{name}.py').read_text() for name in shared]
+    texts += [(SHARED / f'{name}.py').read_text(encoding='utf-8') for name in shared]
     found = {}
     sources = [ast.parse(text) for text in texts]
     for call, module in [(item, source) for source in sources for item in ast.walk(source)]:
@@ -104,7 +104,7 @@ def _constant(name: str, module: ast.Module) -> str:
         if isinstance(statement, ast.ImportFrom) and statement.level == 0 and first in {
                 alias.name for alias in statement.names}:
             spec = find_spec(str(statement.module))
-            return _constant(name, ast.parse(Path(str(spec.origin)).read_text())) if spec else name
+            return _constant(name, ast.parse(Path(str(spec.origin)).read_text(encoding='utf-8'))) if spec else name
         if isinstance(statement, ast.ClassDef) and statement.name == first and rest:
             return _constant(rest, ast.Module(statement.body, []))
         target = statement.target if isinstance(statement, ast.AnnAssign) else (

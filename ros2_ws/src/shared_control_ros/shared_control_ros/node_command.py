@@ -58,7 +58,7 @@ def help_text(program: str, module: str) -> str:
     spec = find_spec(module)
     assert spec is not None and spec.origin is not None, module
     package = module.rpartition('.')[0]
-    description = re.sub('`+', '', ast.get_docstring(ast.parse(Path(spec.origin).read_text())) or '')
+    description = re.sub('`+', '', ast.get_docstring(ast.parse(Path(spec.origin).read_text(encoding='utf-8'))) or '')
     lines = [f'usage: {program} [-h] [--version] [--ros-args [-p NAME:=VALUE ...] [--params-file FILE]]', '',
              description, '', 'options:',
              '  -h, --help  show this help message and exit', '  --version   print the version and exit',

@@ -48,7 +48,7 @@ class Ending:
 
     def _read(self, folder: Path) -> dict[str, Any] | None:
         try:
-            content = json.loads((folder / NAME).read_text())
+            content = json.loads((folder / NAME).read_text(encoding='utf-8'))
             said = {'stage': str(content['stage']), 'tested': content.get('tested'), 'of': content.get('of'),
                     'successes': content.get('successes') if self._shows_result else None}
         except (OSError, ValueError, KeyError, AttributeError):

@@ -24,7 +24,15 @@ from shared_control.scene import Scene
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
-from shared_control_ros.watching.words import NO_LESSON, STARTING, practice_words, words_for
+from shared_control_ros.watching.words import (
+    NO_LESSON,
+    STANDS_STILL,
+    STARTING,
+    STUCK,
+    STUCK_SECONDS,
+    practice_words,
+    words_for,
+)
 
 from .arm_scene import build_scene
 from .from_above import view_from_above
@@ -65,10 +73,10 @@ def build(is_replay: bool, task: Task = BALANCE, showing: Showing = Showing()) -
             else:
                 _keys(task)
         with ui.element('aside').props('aria-label="The lesson"'):
-            _help(is_replay, task)
+            _help(is_replay, task, showing)
             charts = _charts(task, from_above)
             if not is_replay:
-                _buttons()
+                _buttons(showing)
     if not is_replay:
         _end_card('Thank you.' if showing.in_session and not showing.shows_result else 'Thank you, you are finished.')
     _part('focus', 'button').classes('veil').props('aria-label="Click here to teach"')
@@ -93,6 +101,7 @@ def _words(task: Task, showing: Showing) -> dict[str, Any]:
     nothing = STARTING if showing.in_session else NO_LESSON
     return {'words': {**words_for(task), 'nothing': nothing},
             'goes_on': showing.in_session and not showing.shows_result,
+            'verdicts': showing.verdicts, 'stands_still': STANDS_STILL, 'stuck': STUCK, 'stuck_seconds': STUCK_SECONDS,
             'practice': [practice_words(left) for left in range(RESTS_MAX + 1)],
             'marks': showing.marks, 'tested': showing.tested}
 
@@ -151,11 +160,11 @@ def _player() -> None:
                 ui.html(f'{speed} ×', sanitize=False, tag='option').props(f'value={speed}')
 
 
-def _help(is_replay: bool, task: Task) -> None:
+def _help(is_replay: bool, task: Task, showing: Showing) -> None:
     live = _HELP if len(task.axes) == 1 else (
         f'{escape(task.instruction)} The goal is the <b class="goal">green disc</b>.', *_HELP_FROM_ABOVE)
     with ui.element('ol').classes('help'):
-        for line in _REPLAY_HELP if is_replay else live:
+        for line in _REPLAY_HELP if is_replay else live + _HELP_TO_JUDGE * showing.verdicts:
             ui.html(line, sanitize=False, tag='li')
 
 
@@ -188,7 +197,7 @@ def _chart(name: str, title: str, options: dict[str, Any]) -> ui.echart:
         return ui.echart(options).props(f'role=img aria-label="{title}"')
 
 
-def _buttons() -> None:
+def _buttons(showing: Showing) -> None:
     """*Done* is never where *Start* was, nor *Yes* where *Done* was."""
     with ui.element('div').classes('buttons').props('role=group aria-label="The lesson"'):
         with ui.element('div').classes('first'):
@@ -197,11 +206,12 @@ def _buttons() -> None:
         _button('pause', 'Pause', 'everything waits')
         _button('repeat', 'Repeat', 'same ball again')
         _button('stop', 'Stop', 'end, keep all')
-        with _part('judge').classes('judge').props('hidden role=group aria-labelledby=judged'):
-            _text('judged').props('id=judged')
-            _button('judge-success', 'Good', 'key g')
-            _button('judge-failure', 'Bad', 'key b')
-            _button('judge-discard', 'Discard', 'key x')
+        if showing.verdicts:
+            with _part('judge').classes('judge').props('hidden role=group aria-labelledby=judged'):
+                _text('judged').props('id=judged')
+                _button('judge-success', 'Good', 'key g')
+                _button('judge-failure', 'Bad', 'key b')
+                _button('judge-discard', 'Discard', 'key x')
         with ui.element('div').classes('last'):
             _button('finish', 'Done teaching: test the robot')
             with _part('sure').classes('sure').props('hidden role=group aria-label="End the teaching?"'):
@@ -250,7 +260,8 @@ def _moment_options(task: Task) -> dict[str, Any]:
                        'textStyle': {'fontSize': 11}},
             'xAxis': {'type': 'value', 'min': -CHART_SECONDS, 'max': 0, 'interval': 5,
                       'axisLabel': {'formatter': '{value} s'}},
-            'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound / 2},
+            'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound / 2,
+                      'axisLabel': {'hideOverlap': True}},
             'series': [{'name': name, 'type': 'line', 'step': 'end', 'symbol': 'none', 'data': [],
                         'lineStyle': {'color': colour, 'width': width,
                                       'type': dash if row == task.axes[-1] else 'dashed'},
@@ -262,7 +273,7 @@ def _episode_options(colour: str, top: float | None = None) -> dict[str, Any]:
     return {**_axes(),
             'xAxis': {'type': 'category', 'data': []},
             'yAxis': {'type': 'value', 'scale': top is None, 'min': None if top is None else 0, 'max': top,
-                      'splitNumber': 2},
+                      'splitNumber': 2, 'axisLabel': {'hideOverlap': True}},
             'series': [{'type': 'line', 'data': [], 'symbolSize': 6, 'lineStyle': {'color': colour},
                         'itemStyle': {'color': colour}, 'areaStyle': {'opacity': 0.12}}]}
 
@@ -272,9 +283,10 @@ _HELP = (
     'Bring the ball to rest on the <b class="goal">green mark</b> in the middle.',
     f'<kbd>←</kbd> and <kbd>→</kbd>: {_STAYS}',
     "A gamepad's stick, or a finger that pulls the drawing, pushes as far as it is held.",
-    'Push when the robot errs; take your push away when it does well. <kbd>p</kbd> pauses.',
-    'Of the last episode: <kbd>g</kbd> good, <kbd>b</kbd> bad, <kbd>x</kbd> discard it: the robot forgets it. The same '
-    'key again takes that back.')
+    'Push when the robot errs; take your push away when it does well. <kbd>p</kbd> pauses.')
+_HELP_TO_JUDGE = (
+    'The last episode was <kbd>g</kbd> good, <kbd>b</kbd> bad, or <kbd>x</kbd> is to be forgotten; the same key again '
+    'takes that back.',)
 _HELP_FROM_ABOVE = (f'<kbd>←</kbd> <kbd>↑</kbd> <kbd>↓</kbd> <kbd>→</kbd>: {_STAYS}', *_HELP[2:])
 _REPLAY_HELP = (
     '<kbd>space</kbd> plays and pauses; the slider goes anywhere, its marks are episodes.',

@@ -180,7 +180,9 @@ class LiveDesk:
         elif command == 'keep_teaching':
             self._requests.keep_teaching()
         elif command == 'judge':
-            self._judge.say(self._scene, Verdict(value))
+            verdict = Verdict(value)
+            if self.showing.verdicts:
+                self._judge.say(self._scene, verdict)
         elif command == 'stop':
             self.is_over, self._stage = True, 'stopped'
         elif command == 'close':

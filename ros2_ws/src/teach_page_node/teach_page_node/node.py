@@ -53,6 +53,7 @@ class TeachPageNode:
         showing = Showing(
             declare(node, 'feedback', 'full', 'What the page tells besides tray, ball and keys. ball: how each episode '
                     "ended. full: and the robot's push, human share, score and tests.", choices=FEEDBACK),
+            declare(node, 'verdicts', True, 'Offer to call the last episode good, bad or discarded.'),
             bool(session),
             declare(node, 'shows_result', True, 'Show test, picture and report in the end.'))
         task = declare_task(node, 'What is taught: the tray, and the keys.')

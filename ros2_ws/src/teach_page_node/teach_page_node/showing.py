@@ -23,6 +23,8 @@ class Showing:
 
     feedback: str = 'full'
     """One of :data:`shared_control.teaching.feedback.FEEDBACK`."""
+    verdicts: bool = True
+    """Whether the person is offered to judge episodes."""
     in_session: bool = False
     """A lesson is about to be given: nothing known of it means that it starts."""
     shows_result: bool = True

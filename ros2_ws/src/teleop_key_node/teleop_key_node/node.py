@@ -85,6 +85,8 @@ class TeleopKeyNode:
         self._feedback = declare(
             node, 'feedback', 'full', 'What is told besides tray, ball and keys. ball: how each episode ended. '
             "full: and the robot's push, human share, score and tests.", choices=FEEDBACK)
+        self._offers_verdicts = declare(
+            node, 'verdicts', True, 'Offer keys and buttons that call the last episode good, bad or discarded.')
         self._in_session = declare(
             node, 'in_session', False, 'A lesson is about to be given: until the agent speaks, the screen says that it '
             'starts, and after its end that it is over.')
@@ -92,7 +94,8 @@ class TeleopKeyNode:
         buttons = {verdict: declare(
             node, f'{verdict}_button', -1, 'Button of /human/keys (from 0) that gives the last episode the verdict '
             f'{verdict}; -1: none.', minimum=-1, maximum=63) for verdict in Verdict if verdict}
-        self._verdicts = VerdictButtons(node, buttons, len(Key) if self._device == KEYS_DEVICE else 0)
+        self._verdicts = VerdictButtons(
+            node, buttons if self._offers_verdicts else {}, len(Key) if self._device == KEYS_DEVICE else 0)
 
         stick = declare_stick(node)
         self._joystick = Joystick(node, OUR_SOURCES, as_it_is=self._device != KEYS_DEVICE)
@@ -124,7 +127,8 @@ class TeleopKeyNode:
             return None
         keys = self._task.keys if self._device == KEYS_DEVICE else {}
         return Panel(self.node, terminal, self._rate, self._frame_rate, self._keystroke, self._moment_limit,
-                     self._characters, keys, self._task, self._in_session, self._feedback)
+                     self._characters, keys, self._task, self._in_session, self._feedback,
+                     self._offers_verdicts)
 
     def run(self, stop: Stop) -> None:
         """Turn what the person does into M_h until told to stop."""

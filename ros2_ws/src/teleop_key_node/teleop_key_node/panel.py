@@ -62,6 +62,7 @@ class Panel:
         moment_limit: bound of |M_yh|, N m.
         in_session: whether a lesson is about to be given.
         feedback: what the person is told: one of ``FEEDBACK``.
+        verdicts: whether the person is offered to judge episodes.
         characters: ``auto``, ``unicode`` or ``ascii``.
         task: what is taught.
         keys: what the keys move; none when the person holds another device: then only q, p and the screen are here.
@@ -69,7 +70,7 @@ class Panel:
 
     def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, keystroke: float,
                  moment_limit: float, characters: str, keys: KeyMap, task: Task, in_session: bool,
-                 feedback: str):
+                 feedback: str, verdicts: bool):
         self.terminal = terminal
         known = {*keys, Key.SPACE} if keys else set()
         self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
@@ -84,7 +85,7 @@ class Panel:
         self._judge = Judge(node, self.tell)
         self._observer = Observer(node, task)
         self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit, keystroke=keystroke,
-                            in_session=in_session, feedback=feedback)
+                            in_session=in_session, feedback=feedback, offers_verdicts=verdicts)
         self._restarts = 0
         self._paused_stamp_ns = 0
         self._frame_period = 1.0 / frame_rate
@@ -95,7 +96,7 @@ class Panel:
 
     def tell(self, text: str) -> None:
         """Show the person a notice for some seconds."""
-        self._scene.message = f' {text}' if text else ''
+        self._scene.message = f' {text[:1].upper()}{text[1:]}' if text else ''
         self._message_until = time.monotonic() + _MESSAGE_FOR
 
     def read(self, now_ns: int) -> None:
@@ -128,7 +129,7 @@ class Panel:
         elif stroke is Stroke.PAUSE:
             self._paused_stamp_ns = self._observer.stamp_ns
             self.requests.toggle_pause()
-        elif stroke in _VERDICTS:
+        elif stroke in _VERDICTS and self._scene.offers_verdicts:
             self._judge.say(self._scene, _VERDICTS[stroke])
         elif stroke is Stroke.REDRAW:
             self.terminal.redraw()

@@ -15,11 +15,21 @@
 """The teaching screen as lines of text: a pure function of the scene and the size of the window."""
 
 import math
+import re
 
 from shared_control.verdict import Verdict
 from shared_control.wrench import AXIS_NAMES
 from shared_control_ros.watching.scene import Scene
-from shared_control_ros.watching.words import NO_LESSON, STARTING, Words, practice_words, words_for
+from shared_control_ros.watching.words import (
+    NO_LESSON,
+    STANDS_STILL,
+    STARTING,
+    STUCK,
+    STUCK_SECONDS,
+    Words,
+    practice_words,
+    words_for,
+)
 
 from .picture import STEEPER, draw
 
@@ -67,9 +77,10 @@ def _fitting(width: int, *texts: str) -> str:
 
 def _title(scene: Scene, width: int, unicode: bool) -> str:
     episode = '' if scene.episode is None else f'   episode {scene.episode}'
-    left = '' if scene.time_left is None else f'   time left {scene.time_left:4.1f} s'
+    time_left = scene.time_left if scene.phase in ('teach', 'test') else None
+    left = '' if time_left is None else f'   time left {time_left:4.1f} s'
     what = f': {scene.task.name}' if scene.from_above else ' to balance the ball'
-    bar = '' if scene.time_left is None else f' {_time_bar(scene, scene.time_left, unicode)}'
+    bar = '' if time_left is None else f' {_time_bar(scene, time_left, unicode)}'
     return _fitting(width, f' Teach the robot{what}' + episode + left + bar, f' Teach the robot{what}' + episode + left,
                     (episode + left + bar)[2:], (episode + left)[2:])
 
@@ -86,14 +97,23 @@ def _headline(scene: Scene, width: int) -> str:
         word, text = 'PAUSED', 'Everything stands still. Press p to go on.'
     elif scene.waiting:
         word, text = 'WAITING', scene.waiting.partition('\n')[0]
-    elif scene.simulator_silent_for is not None and scene.phase in (None, 'teach', 'test'):
-        word = 'WAITING FOR THE SIMULATOR'
-        silent = scene.simulator_silent_for
-        text = 'No /joint_states' + (f' for {silent:.0f} s.' if math.isfinite(silent) else ' yet.')
+    elif scene.simulator_silent_for is not None and (
+            scene.phase in ('practice', 'teach', 'test') or (scene.phase is None and not scene.in_session)):
+        word = 'WAIT' if scene.in_session else 'WAITING FOR THE SIMULATOR'
+        text = _silence(scene, scene.simulator_silent_for)
     else:
         title, text = _lesson(scene)
         word = title.upper()
-    return _fitting(width, f' [ {word} ]  {text}', f' [ {word} ]  {text.partition(":")[0].partition(". ")[0]}')
+    shorter = re.sub(r'[;,] [^.]*\.', '.', text)  # every sentence without its second half
+    return _fitting(width, *(f' [ {word} ]  {said}' for said in (
+        text, shorter, text.partition(':')[0].partition('. ')[0])))
+
+
+def _silence(scene: Scene, seconds: float) -> str:
+    """What is said of a robot of which nothing has been heard for some seconds."""
+    if not scene.in_session:
+        return 'No /joint_states' + (f' for {seconds:.0f} s.' if math.isfinite(seconds) else ' yet.')
+    return STUCK.format(seconds=f'{seconds:.0f}') if STUCK_SECONDS < seconds < math.inf else STANDS_STILL
 
 
 def _lesson(scene: Scene) -> Words:
@@ -223,7 +243,7 @@ def _returns(scene: Scene, width: int, unicode: bool) -> str:
 
 def _verdict(scene: Scene, width: int) -> str:
     """What the person may say of the last episode, or has said."""
-    if scene.ended is None:
+    if scene.ended is None or not scene.offers_verdicts:
         return ''
     phase, number = scene.ended
     what = f' {"test" if phase == "test" else "episode"} {number}'

@@ -22,7 +22,7 @@ from shared_control.tasks.balance import Balance
 from shared_control.tasks.detour import Detour
 from shared_control.tasks.plate import Plate
 from shared_control.verdict import Verdict
-from shared_control_ros.watching.outcome import outcome_of
+from shared_control_ros.watching.outcome import Outcome, outcome_of
 from shared_control_ros.watching.scene import Parts, Scene
 from teleop_key_node.picture import draw
 from teleop_key_node.screen import render
@@ -107,6 +107,10 @@ def test_bars_keep_to_their_place_beyond_the_scale():
     ({'phase': None, 'in_session': True}, '[ STARTING ]'),
     ({'paused': True, 'simulator_silent_for': 9.0}, 'Press p to go on'),
     ({'simulator_silent_for': 3.2}, '[ WAITING FOR THE SIMULATOR ]  No /joint_states for 3 s.'),
+    ({'simulator_silent_for': 3.2, 'in_session': True},
+     '[ WAIT ]  The robot has stopped answering (3 s). Please tell the experimenter.'),
+    ({'simulator_silent_for': 2.0, 'in_session': True}, '[ WAIT ]  The robot stands still.'),
+    ({'simulator_silent_for': float('inf'), 'in_session': True, 'phase': None}, '[ STARTING ]'),
     ({'simulator_silent_for': float('inf'), 'phase': None}, 'No /joint_states yet.'),
     ({'simulator_silent_for': 3.2, 'phase': 'learn'}, '[ THE ROBOT LEARNS ]'),
     ({'waiting': 'for a tick since 14:00 (7 s)\nsimulator: no torque'}, '[ WAITING ]  for a tick since 14:00 (7 s)'),
@@ -141,6 +145,17 @@ def test_a_person_is_told_as_much_as_the_study_wants(feedback, shown, hidden):
     scene = replace(SCENE, feedback=feedback, ball_on_tray=np.zeros(3))
     text = '\n'.join(render(scene, 80, 24) + render(replace(scene, phase='learn', outcome=FELL), 80, 24))
     assert [word for word in shown if word not in text] == [] == [word for word in hidden if word in text]
+
+
+def test_how_an_episode_ended_leaves_room_for_when_the_next_begins():
+    off = Outcome(False, 'The ball was kept for 15 s; in the end 18 cm from the middle.')
+    text = render(replace(SCENE, phase='learn', outcome=off, next_in=2.4), 80, 24)[2]
+    assert text.rstrip() == ' [ THE ROBOT LEARNS ]  The ball was kept for 15 s. Next in 3.'
+
+
+def test_who_is_not_to_judge_reads_nothing_of_it():
+    scene = replace(SCENE, ended=('teach', 2), offers_verdicts=False)
+    assert 'good' not in '\n'.join(render(scene, 80, 24))
 
 
 @pytest.mark.parametrize('unicode', [True, False])

@@ -39,7 +39,7 @@ def with_fer_inertials(spec: RobotSpec) -> str:
     Raises:
         ValueError: the robot is no Panda.
     """
-    inertials = yaml.safe_load((files(__package__) / 'specs' / 'fer_inertials.yaml').read_text())
+    inertials = yaml.safe_load((files(__package__) / 'specs' / 'fer_inertials.yaml').read_text(encoding='utf-8'))
     robot = ElementTree.fromstring(spec.description)
     links = {link.get('name'): link for link in _links(robot, spec)}
     for name, numbers in inertials.items():

@@ -80,7 +80,7 @@ class RobotSpec:
     @property
     def description(self) -> str:
         """The URDF as text, with the tool that the robot carries."""
-        text = self.urdf.read_text()
+        text = self.urdf.read_text(encoding='utf-8')
         if self.tool_link is None:
             return text
         robot = ElementTree.fromstring(text)

@@ -63,7 +63,7 @@ def panda() -> RobotSpec:
 
 def _read(path: Path, name: str) -> RobotSpec:
     try:
-        content = yaml.safe_load(path.read_text())
+        content = yaml.safe_load(path.read_text(encoding='utf-8'))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise RobotFileError(f'cannot read the robot file {path}: {error}') from error
     return _File(path, content).spec(name)

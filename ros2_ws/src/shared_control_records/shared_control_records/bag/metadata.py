@@ -68,7 +68,7 @@ def lists_all_files(bag: Path) -> bool:
     if not path.exists():
         return False
     try:
-        named = yaml.safe_load(path.read_text())['rosbag2_bagfile_information']['relative_file_paths']
+        named = yaml.safe_load(path.read_text(encoding='utf-8'))['rosbag2_bagfile_information']['relative_file_paths']
     except (yaml.YAMLError, KeyError, TypeError) as error:
         raise BagError(f'{path} is no metadata of a bag; move it away') from error
     return {file.name for file in bag_files(bag)} <= set(named)
@@ -80,7 +80,7 @@ def write_metadata(bag: Path) -> None:
     finished = [(name, summary) for name, summary in summaries if summary is not None]
     target = bag / 'metadata.yaml'
     unfinished = target.with_suffix('.yaml.tmp')
-    unfinished.write_text(_dump({'rosbag2_bagfile_information': _describe(finished)}))
+    unfinished.write_text(_dump({'rosbag2_bagfile_information': _describe(finished)}), encoding='utf-8')
     unfinished.replace(target)
 
 

@@ -122,7 +122,7 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
 
 def _check_finished(path: Path) -> None:
     if not path.exists():
-        raise BagReadError(f'there is no bag {path}')
+        raise BagReadError(f'there is no bag {path}: name a folder of a session or of ros2 bag, or an MCAP file')
     folder = path if path.is_dir() else path.parent
     torn = [file.name for file in (sorted(path.glob('*.mcap')) if path.is_dir() else [path]) if not is_finished(file)]
     missing = path.is_dir() and not (path / 'metadata.yaml').is_file()

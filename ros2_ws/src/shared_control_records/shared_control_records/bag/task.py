@@ -47,7 +47,7 @@ def recorded_task(bag: Path) -> Task | None:
     """
     beside = bag.absolute().parent / SETTINGS
     if beside.is_file() and not bag.is_file():
-        text = beside.read_text()
+        text = beside.read_text(encoding='utf-8')
     else:
         text = session_record(bag).get(SETTINGS, '{}') if bag.exists() else '{}'
     try:

@@ -47,7 +47,7 @@ def pack(folder: SessionFolder, restarts: int) -> dict[str, str]:
 
     Bags are handed to others: no absolute path is in it, which would name a person's home, and no token.
     """
-    packed = {_key(folder, path): path.read_text() for path in _files(folder) if path.is_file()}
+    packed = {_key(folder, path): path.read_text(encoding='utf-8') for path in _files(folder) if path.is_file()}
     parameters = _key(folder, folder.parameters)
     if parameters in packed:
         try:

@@ -39,6 +39,8 @@ class EpisodeRow:
     """Part of the steps in which the human gave a moment, 0..1"""
     verdict: Verdict = Verdict.NONE
     """What a person has said of it."""
+    reason: str = ''
+    """Why it was broken off, where that is known."""
 
     @property
     def counts(self) -> bool:
@@ -56,7 +58,7 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
         return []
     rows = []
     try:
-        content = list(csv.DictReader(path.read_text().splitlines()))
+        content = list(csv.DictReader(path.read_text(encoding='utf-8').splitlines()))
     except (UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f'{path} is no table of episodes: {error}') from error
     for line, row in enumerate(content, start=2):
@@ -67,7 +69,7 @@ def read_episodes(path: Path) -> list[EpisodeRow]:
                 episode_return=_number(row, 'return'), fallen=None if fallen is None else bool(fallen),
                 human_share=_number(row, 'human_share'),
                 intervention_rate=_number(row, 'intervention_rate'),
-                verdict=Verdict(row.get('verdict') or '')))
+                verdict=Verdict(row.get('verdict') or ''), reason=row.get('reason') or ''))
         except (KeyError, ValueError, TypeError) as error:
             raise ValueError(f'{path}, line {line}: no usable episode ({error!r})') from error
     return rows
@@ -77,10 +79,11 @@ def write_episodes(rows: list[EpisodeRow], path: Path) -> None:
     """Write a table that :func:`read_episodes` reads; what is None stays empty."""
     text = io.StringIO(newline='')
     writer = csv.writer(text)
-    writer.writerow(('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share', 'intervention_rate', 'verdict'))
+    writer.writerow(
+        ('episode', 'phase', 'seconds', 'return', 'fallen', 'human_share', 'intervention_rate', 'verdict', 'reason'))
     writer.writerows((row.number, row.phase, row.seconds, row.episode_return,
                       None if row.fallen is None else int(row.fallen), row.human_share, row.intervention_rate,
-                      row.verdict)
+                      row.verdict, row.reason)
                      for row in rows)
     write_atomically(path, text.getvalue().encode())
 

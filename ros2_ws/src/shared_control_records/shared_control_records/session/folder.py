@@ -93,7 +93,8 @@ class SessionFolder(RunFolder):
         """
         folder = cls(Path(path).expanduser().absolute())
         if not folder.path.is_dir():
-            raise RunFolderError(f'there is no session folder {folder.path}')
+            raise RunFolderError(f'there is no session folder {folder.path}: sessions are in out/sessions, '
+                                 'unless --output said another place')
         if not folder.holds_run:
             raise RunFolderError(f'{folder.path} is no session folder: it has neither settings.json nor bag/')
         return folder
@@ -113,7 +114,7 @@ class SessionFolder(RunFolder):
             RunFolderError: it is no such file.
         """
         try:
-            content = json.loads(path.read_text())
+            content = json.loads(path.read_text(encoding='utf-8'))
         except FileNotFoundError:
             return None
         except (OSError, ValueError, RecursionError) as error:
@@ -129,7 +130,7 @@ class SessionFolder(RunFolder):
             RunFolderError: the file is no parameter file.
         """
         try:
-            content = yaml.safe_load(self.parameters.read_text())
+            content = yaml.safe_load(self.parameters.read_text(encoding='utf-8'))
             return dict(content.get(node, {}).get('ros__parameters', {}))
         except FileNotFoundError:
             return {}

@@ -72,8 +72,8 @@ def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None
     environment.filters['number'] = _number
     environment.filters['percent'] = lambda share: _number(None if share is None else 100 * share, '.0f')
     environment.filters['base64'] = lambda content: base64.b64encode(content).decode()
-    return environment.from_string(_PAGE.read_text()).render(
-        css=Markup(STYLE_SHEET.read_text()), title=_title(summary), s=summary, rows=rows, test=test,
+    return environment.from_string(_PAGE.read_text(encoding='utf-8')).render(
+        css=Markup(STYLE_SHEET.read_text(encoding='utf-8')), title=_title(summary), s=summary, rows=rows, test=test,
         judged=any(row.verdict for row in rows),
         figures=_figures(summary), done=_done(summary), panels=panels, origin=_origin(summary))
 

@@ -71,6 +71,7 @@ class Summary:
     bag_checks: list[str] | None
     """What is wrong with the bag; empty when nothing is."""
     bag: str | None
+    """Names, without the folder: reports are passed on, and whose machine it was is nobody's business."""
     picture: str | None
     report: str
 
@@ -116,9 +117,9 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
         tick_ms={'p50': timing.tick_p50_ms, 'p99': timing.tick_p99_ms} if timing else None,
         late_tick_ratio=round(timing.late_tick_ratio, 6) if timing else None,
         restarts=restarts,
-        bag_checks=_bag_checks(folder, bag) if bag else [bag_error] if bag_error else None,
-        bag=str(folder.bag) if folder.bag.exists() else None,
-        picture=str(folder.picture), report=str(folder.report))
+        bag_checks=_bag_checks(folder, bag) if bag else
+        [bag_error.replace(f'{folder.bag.parent}/', '')] if bag_error else None,
+        bag=folder.bag.name if folder.bag.exists() else None, picture=folder.picture.name, report=folder.report.name)
 
 
 def _tutors(settings: dict[str, Any]) -> str | None:

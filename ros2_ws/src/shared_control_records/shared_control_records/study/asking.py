@@ -14,6 +14,8 @@
 
 """How a participant is asked: at the terminal, or on a page (:mod:`.form_page`)."""
 
+import shutil
+import textwrap
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
@@ -50,23 +52,29 @@ class Asker(Protocol):
         """Say something, without an answer."""
 
 
+def _show(text: str) -> None:
+    """Print a text, its lines wrapped between words."""
+    width = shutil.get_terminal_size().columns - 1
+    print('\n'.join(part for line in text.split('\n') for part in textwrap.wrap(line, width) or ['']))
+
+
 class TerminalAsker:
     """At this terminal."""
 
     def consent(self, text: str) -> bool:
         """See :class:`Asker`."""
-        print(text)
+        _show(text)
         return input('\nDo you agree? Type yes or no: ').strip().lower() == 'yes'
 
     def ready(self, text: str) -> None:
         """See :class:`Asker`."""
-        print(f'\n{text}')
+        _show(f'\n{text}')
         input('Press Enter to go on. ')
 
     def choose(self, text: str, choices: Mapping[str, str]) -> str:
         """See :class:`Asker`."""
         keys = list(choices)
-        print(f'\n{text}')
+        _show(f'\n{text}')
         for number, key in enumerate(keys, start=1):
             print(f'  {number}: {choices[key]}')
         while True:
@@ -76,11 +84,12 @@ class TerminalAsker:
 
     def rate(self, text: str, scales: Mapping[str, Scale], keep: Callable[[str, float], None]) -> None:
         """See :class:`Asker`."""
-        print(f'\n{text} Answer each with a number from 0 to 100; "{STEP}" returns to the question before.')
+        _show(f'\n{text} Answer each with a number from 0 to 100; "{STEP}" returns to the question before.')
         names, at = list(scales), 0
         while at < len(names):
             scale = scales[names[at]]
-            given = input(f'  {scale.question} (0 {scale.low}, 100 {scale.high}) ').strip().lower()
+            _show(f'\n{scale.question}')
+            given = input(f'  0 ({scale.low}) to 100 ({scale.high}): ').strip().lower()
             if given == STEP:
                 at = max(at - 1, 0)
                 continue
@@ -96,10 +105,15 @@ class TerminalAsker:
 
     def answer(self, text: str, questions: Mapping[str, Question]) -> dict[str, str]:
         """See :class:`Asker`."""
-        print(f'\n{text}')
+        _show(f'\n{text}')
         return {name: self.choose(question.ask, dict(zip(question.choices, question.choices, strict=True)))
-                if question.choices else input(f'\n{question.ask} ').strip() for name, question in questions.items()}
+                if question.choices else self._text(question.ask) for name, question in questions.items()}
+
+    @staticmethod
+    def _text(ask: str) -> str:
+        _show(f'\n{ask}')
+        return input('> ').strip()
 
     def tell(self, text: str) -> None:
         """See :class:`Asker`."""
-        print(text)
+        _show(text)

@@ -31,6 +31,7 @@ def add_command(commands: argparse._SubParsersAction) -> None:
         examples=['shared-control study studies/quick.yaml',
                   'shared-control study studies/baselines.yaml --quick --json -',
                   'shared-control study studies/people.yaml --participant 3',
+                  'shared-control study studies/people.yaml --participant 3 --note "the phone rang in part 2"',
                   'shared-control report out/studies/quick'])
     parser.add_argument('plan', type=Path, metavar='PLAN', help='YAML file; studies/ has examples')
     parser.add_argument('--output', type=Path, default=None, metavar='FOLDER',
@@ -44,28 +45,44 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                         help='do the runs on this Ray cluster, auto: the one running here (default: on this machine)')
     parser.add_argument('--participant', type=int, metavar='N', default=None,
                         help='lead this real participant through what is left to do (default: what needs nobody)')
-    parser.add_argument('--withdraw', choices=('keep', 'delete'), default=None,
-                        help='--participant takes no further part: keep, or delete, what was recorded of them '
-                             '(default: they go on)')
+    about = parser.add_mutually_exclusive_group()
+    about.add_argument('--withdraw', choices=('keep', 'delete'), default=None,
+                       help='--participant takes no further part: keep, or delete, what was recorded of them '
+                            '(default: they go on)')
+    about.add_argument('--note', metavar='TEXT', default=None,
+                       help='note this about --participant, with the time, also while they take part (default: none)')
+    about.add_argument('--exclude', metavar='REASON', default=None,
+                       help='leave --participant out of the report, and say there why (default: they count)')
+    about.add_argument('--include', action='store_true', help='take --exclude back')
     add_json_option(parser, 'the figures of every condition with every group of simulated participants')
 
 
 def run(args: argparse.Namespace) -> int:
     """Do what is left of a study; the exit code."""
     from .folder import StudyFolder
+    from .notes import add_note
     from .people import INTERRUPTED, asker_of, lead_through, withdraw
     from .run import do_runs
     if args.workers < 1:
         raise ValueError(f'--workers is {args.workers}, expected at least 1')
-    if args.withdraw and args.participant is None:
-        raise ValueError('--withdraw needs --participant NUMBER')
+    noted = next(((kind, text) for kind, text in (
+        ('note', args.note), ('exclude', args.exclude), ('include', '' if args.include else None))
+        if text is not None), None)
+    for option in ('withdraw', 'note', 'exclude', 'include'):
+        if getattr(args, option) not in (None, False) and args.participant is None:
+            raise ValueError(f'--{option} needs --participant NUMBER')
     folder = StudyFolder(
         args.output or Path('out/studies') / (f'{args.plan.stem}-quick' if args.quick else args.plan.stem))
-    plan = folder.begin(args.plan, args.participant, args.quick)
+    plan = folder.begin(args.plan, args.participant, args.quick, claims=noted is None)
     if args.participant is not None:
         if plan.people is None:
             raise ValueError(f'the participants of {args.plan} are simulated: leave --participant out')
         participant = plan.participant(args.participant)
+        if noted is not None:
+            add_note(folder.person(participant), *noted)
+            print({'note': 'Noted', 'exclude': 'Left out of the report', 'include': 'Counts again'}[noted[0]]
+                  + f': participant {participant.number}.')
+            return 0
         if args.withdraw:
             withdraw(folder, plan, participant, args.withdraw)
             did = 'deleted' if args.withdraw == 'delete' else 'kept'

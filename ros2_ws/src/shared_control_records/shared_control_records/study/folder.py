@@ -31,7 +31,7 @@ class StudyFolder:
 
         plan.yaml                         as it was begun with
         runs/CONDITION/pNN/               policy, episodes, tests and result of a run
-        people/pNN/                       a real participant: progress.json, practice, a session for each condition
+        people/pNN/                       a real participant: progress.json, notes.csv, a session for each condition
 
     Args:
         path: of the folder.
@@ -59,13 +59,15 @@ class StudyFolder:
         """The folder of the session in which a real participant teaches."""
         return self.person(job.participant) / job.condition.name
 
-    def begin(self, plan_file: Path, number: int | None = None, quick: bool = False) -> Plan:
+    def begin(self, plan_file: Path, number: int | None = None, quick: bool = False,
+              claims: bool = True) -> Plan:
         """Make the folder, or take it up again; gives the plan.
 
         Args:
             plan_file: what the folder was, or will be, begun with.
             number: claim a participant's folder for this process alone; when None, the runs.
             quick: it is begun with the quick form of the plan.
+            claims: False claims nothing: another process may be at work there.
 
         Raises:
             PlanError: the plan cannot be used, or has no such participant.
@@ -76,12 +78,14 @@ class StudyFolder:
         try:
             claimed = self.path if number is None else self.person(plan.participant(number))
             claimed.mkdir(parents=True, exist_ok=True)
-            self._lock = (claimed / '.lock').open('ab')
-            lock(self._lock)
+            if claims:
+                self._lock = (claimed / '.lock').open('ab')
+                lock(self._lock)
             if not self.plan.exists():
                 write_atomically(self.plan, text)
         except BlockingIOError as error:
-            raise StudyError(f'{claimed} is in use: this study is running already') from error
+            raise StudyError(
+                f'{claimed} is in use: this study is running already; wait for its end, or end it') from error
         except OSError as error:
             raise StudyError(f'cannot write the study folder {self.path}: {error.strerror}') from error
         if self.plan.read_bytes() != text:

@@ -24,7 +24,7 @@ from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
-from shared_control_learning.episode_table import TABLE_NAME, read_rows
+from shared_control_learning.episode_table import TABLE_NAME, TEXTS, read_rows
 from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
 from shared_control_learning.evaluation.result import ProtocolResult, checkpoint
 from shared_control_learning.evaluation.run import run_protocol
@@ -141,5 +141,5 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
 
 def table(path: Path) -> list[dict[str, Any]]:
     """Taught episodes of an ``episodes.csv``, numbers as numbers."""
-    return [{key: value if key in ('phase', 'verdict') else float(value) for key, value in row.items()}
+    return [{key: value if key in TEXTS else float(value) for key, value in row.items()}
             for row in read_rows(path) if row['phase'] == 'teach']

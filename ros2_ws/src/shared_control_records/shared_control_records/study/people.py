@@ -28,6 +28,7 @@ from ..session.folder import SessionFolder
 from .asking import Asker, TerminalAsker
 from .folder import StudyError, StudyFolder
 from .form_page import FormPage
+from .notes import NAME as NOTES
 from .plan import Condition, Job, Participant, People, Plan
 from .progress import SCALES, Progress
 
@@ -76,7 +77,8 @@ def lead_through(folder: StudyFolder, plan: Plan, participant: Participant, aske
     assert people is not None, 'participants of this study are simulated'
     progress = Progress.of(folder.person(participant))
     if progress.withdrawn:
-        raise StudyError(f'participant {participant.number} has withdrawn from this study')
+        raise StudyError(f'participant {participant.number} has withdrawn from this study: who comes instead has '
+                         'another number')
     if not progress.consented and not _consent(people, progress, asker):
         return False
     if people.before and not progress.before:
@@ -120,6 +122,7 @@ def withdraw(folder: StudyFolder, plan: Plan, participant: Participant, what: st
     progress.save()
     if what == 'delete':
         try:
+            (person / NOTES).unlink(missing_ok=True)
             for job in plan.jobs:
                 if job.participant == participant:
                     for path in (folder.session(job), folder.run(job)):
@@ -150,8 +153,9 @@ def _teach(path: Path, condition: Condition, participant: Participant, people: P
         rests = 0 if progress.practice else people.practice_rests
         code = run_session([
             '--tutor', TUTOR[people.teach_on], '--seed', str(participant.seed), '--output', str(path), '--blind',
-            '--feedback', people.feedback, '--practice-rests', str(rests),
-            '--practice-minutes', str(people.practice_minutes), '--minutes', str(people.minutes),
+            '--feedback', people.feedback, '--verdicts' if people.verdicts else '--no-verdicts',
+            '--practice-rests', str(rests), '--practice-minutes', str(people.practice_minutes),
+            '--minutes', str(people.minutes),
             *_learning(condition), *people.session_options])
     if progress.practice is None:
         progress.practice = SessionFolder(path).read_json(SessionFolder(path).learner / PRACTICE_NAME)

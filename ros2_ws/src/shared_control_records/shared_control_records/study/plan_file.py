@@ -135,6 +135,8 @@ class People(Section):
     """Where they teach, and are asked."""
     feedback: Literal['none', 'ball', 'full'] = 'ball'
     """What they are told while they teach, in either (:mod:`shared_control.teaching.feedback`)."""
+    verdicts: bool = False
+    """Whether they are offered to call an episode good, bad or discarded, which the robot then forgets; in either."""
     before: dict[Name, Question] = {}
     """Questions to everybody before the first session, by the name under which answers are kept."""
     after: dict[Name, Question] = {}

@@ -85,7 +85,8 @@ class Progress(BaseModel):
         except FileNotFoundError:
             progress = cls()
         except ValidationError as error:
-            raise ProgressError(f'{path} is damaged: {what_is_wrong(error)}') from error
+            raise ProgressError(
+                f'{path} is damaged: {what_is_wrong(error)}; correct it, or take it from a back-up') from error
         progress._path = path
         return progress
 

@@ -93,7 +93,7 @@ def load_result(folder: Path) -> RunResult | None:
         ResultError: what is there is damaged.
     """
     try:
-        content = json.loads((folder / RESULT).read_text())
+        content = json.loads((folder / RESULT).read_text(encoding='utf-8'))
         with np.load(folder / TESTS, allow_pickle=False) as packed:
             arrays = {name: packed[name] for name in packed.files}
         names = dict.fromkeys(name.rpartition('/')[0] for name in arrays)

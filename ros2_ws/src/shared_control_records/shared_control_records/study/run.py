@@ -99,7 +99,7 @@ def _summary(folder: StudyFolder, job: Job) -> str:
 
 
 def _content(folder: StudyFolder, job: Job) -> dict:
-    return json.loads((folder.run(job) / RESULT).read_text())
+    return json.loads((folder.run(job) / RESULT).read_text(encoding='utf-8'))
 
 
 def _tell(bar: tqdm, text: str, output: TextIO | None) -> None:

@@ -28,6 +28,7 @@ from shared_control_sim.changes import AS_TAUGHT
 from ..study.folder import StudyFolder
 from ..study.plan import Condition, Plan, load_plan
 from ..study.result import ResultError, RunResult, load_result
+from .participants import excluded_participants
 from .statistics import Times
 
 BEST = 5
@@ -43,6 +44,8 @@ class Study:
     """Those that are done."""
     problems: tuple[str, ...]
     """Results that cannot be read."""
+    excluded: dict[int, str]
+    """Participants whose runs are left out, and why."""
 
     @property
     def conditions(self) -> tuple[str, ...]:
@@ -61,6 +64,11 @@ class Study:
         """
         return sorted(self.of(condition), key=self._badness)[:count]
 
+    @property
+    def missing(self) -> int:
+        """How many runs are not done, or cannot be read."""
+        return sum(job.participant.number not in self.excluded for job in self.plan.jobs) - len(self.runs)
+
     def task(self, condition: str) -> Task:
         """What is learned in a condition."""
         return _task(next(c for c in self.plan.conditions if c.name == condition))
@@ -75,14 +83,18 @@ class Study:
 
 
 def load_study(folder: StudyFolder) -> Study:
-    """All finished runs of a study; one that cannot be read is left out and said.
+    """All finished runs of a study; one that cannot be read is left out and said, as are those of who is excluded.
 
     Raises:
         PlanError: the plan is damaged.
+        ValueError: the notes on a participant are.
     """
     plan = load_plan(folder.plan)
+    excluded = excluded_participants(folder, plan)
     runs, problems = [], []
     for job in plan.jobs:
+        if job.participant.number in excluded:
+            continue
         try:
             run = load_result(folder.run(job))
         except ResultError as error:
@@ -90,7 +102,7 @@ def load_study(folder: StudyFolder) -> Study:
             continue
         if run is not None:
             runs.append(run)
-    return Study(plan, tuple(runs), tuple(problems))
+    return Study(plan, tuple(runs), tuple(problems), excluded)
 
 
 def run_table(study: Study) -> pd.DataFrame:

@@ -32,6 +32,7 @@ from ..study.folder import StudyFolder
 from .cells import cell_rows
 from .figures import draw_all
 from .measures import Study, load_study, lost_error, run_table, times
+from .participants import participants_table, turnout
 from .statistics import survival
 from .tables import comparison_table, conditions_table, group_table, transfer_table
 
@@ -48,12 +49,15 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
         OSError: ``output`` cannot be written.
     """
     study = load_study(folder)
-    if not study.runs:
-        problems = ''.join(f'\n  {problem}' for problem in study.problems)
-        raise ValueError(f'no run of the study in {folder.path} is done yet{problems}')
     figures, data = output / 'figures', output / 'data'
     for path in (figures, data):
         path.mkdir(parents=True, exist_ok=True)
+    if study.plan.people is not None:
+        _write_table(data / 'participants.csv', participants_table(folder, study.plan))
+    if not study.runs:
+        problems = ''.join(f'\n  {problem}' for problem in study.problems)
+        raise ValueError(f'no run of the study in {folder.path} is done yet: shared-control study does those that need '
+                         f'nobody, and the tests of what people have taught{problems}')
     runs = run_table(study)
     tables = {'runs': runs, 'conditions': conditions_table(study, runs), 'comparisons': comparison_table(study, runs),
               'groups': group_table(runs), 'cells': pd.DataFrame(cell_rows(study)),
@@ -66,17 +70,21 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
             sheet.save(figures / plot.name, footer, f'{plot.title}. {plot.caption}')
             drawn.append((plot, _embedded(figures / f'{plot.name}.svg')))
     for name, table in tables.items():
-        write_atomically(data / f'{name}.csv', table.to_csv(index=False, float_format='%.6g').encode())
+        _write_table(data / f'{name}.csv', table)
     page = output / 'report.html'
-    write_atomically(page, _page(study, tables, drawn, footer).encode())
+    write_atomically(page, _page(folder, study, tables, drawn, footer).encode())
     return page
+
+
+def _write_table(path: Path, table: pd.DataFrame) -> None:
+    write_atomically(path, table.to_csv(index=False, float_format='%.6g').encode())
 
 
 def _embedded(svg: Path) -> str:
     return 'data:image/svg+xml;base64,' + base64.b64encode(svg.read_bytes()).decode()
 
 
-def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list, footer: str) -> str:
+def _page(folder: StudyFolder, study: Study, tables: dict[str, pd.DataFrame], drawn: list, footer: str) -> str:
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True,
                                      lstrip_blocks=True)
     environment.filters['number'] = _number
@@ -88,8 +96,11 @@ def _page(study: Study, tables: dict[str, pd.DataFrame], drawn: list, footer: st
         row['pair'] = f'{row["first"]} beats {row["second"]}'
     for row in groups:
         row['row'] = (study.conditions.index(row['condition']), row['measure'])
-    return environment.from_string(_PAGE.read_text()).render(
-        css=Markup(STYLE_SHEET.read_text()), study=study, simulated=simulated, figures=drawn,
+    return environment.from_string(_PAGE.read_text(encoding='utf-8')).render(
+        css=Markup(STYLE_SHEET.read_text(encoding='utf-8')), study=study, simulated=simulated, figures=drawn,
+        turnout=None if simulated else turnout(folder, study.plan),
+        # The report is passed on: whose machine it was is nobody's business.
+        problems=[problem.replace(f'{folder.path}/', '') for problem in study.problems],
         headlines=_headlines(study), conditions=conditions,
         measures=list(dict.fromkeys(row['measure'] for row in conditions)), comparisons=comparisons, groups=groups,
         reduction=_reduction(study), thesis_reduction=THESIS_REDUCTION,

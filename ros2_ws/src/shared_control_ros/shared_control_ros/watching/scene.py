@@ -89,6 +89,8 @@ class Scene:
     """Share of the last test that succeeded, 0..1."""
     feedback: str = 'full'
     """What the person is told: one of :data:`shared_control.teaching.feedback.FEEDBACK`."""
+    offers_verdicts: bool = True
+    """Whether the person is offered to judge episodes."""
     in_session: bool = False
     """Whether a lesson is about to be given: nothing known of it means that it starts."""
     ending: bool = False

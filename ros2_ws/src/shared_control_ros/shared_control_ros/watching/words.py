@@ -31,6 +31,10 @@ class Words(NamedTuple):
 STARTING = Words('Starting', 'Robot and learner are getting ready.')
 """A session has begun, and the agent has said nothing yet."""
 NO_LESSON = Words('No lesson', 'Nobody learns at the moment; your keys move the tray.')
+STANDS_STILL = 'The robot stands still.'
+STUCK_SECONDS = 3.0
+"""After this much silence of the robot people are told to call somebody."""
+STUCK = 'The robot has stopped answering ({seconds} s). Please tell the experimenter.'
 PHASES = {
     'wait': Words('Get ready', 'An episode is about to begin. Your keys do not count yet.'),
     'practice': Words('Practice', 'You alone move the tray: the robot is off. Get the feel of it.'),
@@ -72,4 +76,5 @@ def words_of_verdict(phase: str, number: int, verdict: Verdict, is_running: bool
         return f'{what} is discarded: ' + (
             'it counts nowhere, but the robot has learned from it.' if is_running else
             'the robot forgets it. The same again keeps it.')
-    return f'{what}: {verdict}.' if verdict else f'{what}: your verdict is taken back.'
+    word = {Verdict.SUCCESS: 'good', Verdict.FAILURE: 'bad'}.get(verdict)
+    return f'{what}: {word}.' if word else f'{what}: your verdict is taken back.'

@@ -3,7 +3,7 @@
 import { askToPause, askWhetherDone, canStart, isTooSoon } from "./panel.js";
 import { part } from "./parts.js";
 
-const VERDICTS = { g: "success", b: "failure", x: "discard" };
+const VERDICTS = window.teachPage.verdicts ? { g: "success", b: "failure", x: "discard" } : {}; // those that are offered
 const SETTLE_MS = 700; // a question that has just come is not answered by a second click
 
 export function listenToButtons(send) {

@@ -31,6 +31,7 @@ export function showPicture(picture, isReplay) {
 
   const left = isEpisode && !isStuck(picture) && picture.time_left !== null ? Math.max(picture.time_left, 0) : null;
   setText("time-left", left === null ? "" : `${left.toFixed(0)} s left`);
+  part("time-bar").parentElement.hidden = left === null;
   part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / window.teachPage.episode_seconds[phase])}%`;
   if (isReplay && picture.success !== null && !window.teachPage.tested) setText("success", `${Math.round(100 * picture.success)} % ${window.teachPage.axes.length > 1 ? "at the goal" : "kept in the middle"}`);
   show("score", isReplay && part("success").textContent !== "");
@@ -41,7 +42,7 @@ export function showPicture(picture, isReplay) {
   showButtons(picture);
 }
 
-const isStuck = (picture) => picture.silent_for !== null && picture.silent_for > 3 && !picture.paused;
+const isStuck = (picture) => picture.silent_for !== null && picture.silent_for > window.teachPage.stuck_seconds && !picture.paused;
 
 function showDoing(picture, doing, isReplay) {
   const [kind, text] = isReplay ? ["", phase === null ? "" : viewersWords()] : says(picture, doing);
@@ -65,7 +66,7 @@ function says(picture, doing) {
   if (picture.paused) return ["", "Paused: everything waits, and keys do not count."];
   if (picture.q === null) return ["trouble", "Waiting for the robot …"];
   if (picture.silent_for !== null && (phase === "teach" || phase === "test" || phase === "practice")) {
-    return ["trouble", isStuck(picture) ? `The robot has stopped answering (${picture.silent_for.toFixed(0)} s). Please tell the experimenter.` : "The robot stands still."];
+    return ["trouble", isStuck(picture) ? window.teachPage.stuck.replace("{seconds}", picture.silent_for.toFixed(0)) : window.teachPage.stands_still];
   }
   if (!role.teaches) return ["", role.seat_is_free ? "You are watching. Nobody teaches." : "You are watching: another page teaches."];
   return ["", picture.notice || (phase === "practice" ? window.teachPage.practice[picture.rests_left] : doing)];
@@ -149,6 +150,7 @@ function showButtons(picture) {
 
 // What a person may say of the last episode that has ended, and has said.
 function showVerdict({ ended, verdict }) {
+  if (!window.teachPage.verdicts) return;
   show("judge", role.teaches && ended !== null);
   if (ended === null) return;
   setText("judged", `${ended[0] === "test" ? "Test" : "Episode"} ${ended[1]}`);
