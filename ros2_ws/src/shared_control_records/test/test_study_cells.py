@@ -61,7 +61,7 @@ def result(job, skilled, episodes, successes, on_the_way=None):
 
 def study(plan, make):
     """A study of runs that ``make`` gives, None for those that are not done."""
-    return Study(plan, tuple(run for run in map(make, plan.jobs) if run is not None), ())
+    return Study(plan, tuple(run for run in map(make, plan.jobs) if run is not None), (), {})
 
 
 def test_a_cell_tells_what_it_took_until_skilled_and_what_became_of_it(plan):
