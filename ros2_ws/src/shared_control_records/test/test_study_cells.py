@@ -121,11 +121,13 @@ def test_the_quick_form_is_one_participant_of_two_groups_and_three_episodes():
     assert quick.tests == ('randomized',) and quick.checkpoints == () and whole.checkpoints == (2, 5, 10)
 
 
-def test_a_plan_of_real_people_has_no_quick_form(tmp_path):
+def test_a_plan_of_real_people_has_no_quick_form_and_no_cells(tmp_path, monkeypatch, capsys):
     path = tmp_path / 'plan.yaml'
     path.write_text(yaml.safe_dump({'participants': {'real': 2, 'consent': 'Yes.'}, 'conditions': {'coached': {}}}))
     with pytest.raises(PlanError, match=r'plan\.yaml: .*simulated'):
         read_plan(path, in_quick_form=True)
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(path), '--output', str(tmp_path), '--json', '-'])
+    assert main() == 2 and '--json' in capsys.readouterr().err
 
 
 def test_the_command_runs_a_plan_prints_its_cells_and_keeps_policies_on_the_way(tmp_path, monkeypatch, capfd):

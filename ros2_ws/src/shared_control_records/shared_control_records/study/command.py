@@ -90,6 +90,8 @@ def run(args: argparse.Namespace) -> int:
             return 0
         return 0 if lead_through(folder, plan, participant, asker_of(plan.people)) else INTERRUPTED
     who = 'simulated' if plan.people is None else 'real'
+    if args.json is not None and plan.people is not None:
+        raise ValueError(f'the participants of {args.plan} are real: leave --json out, the report has their figures')
     prints = prose(args.json)
     print(f'{len(plan.participants)} {who} participants x {len(plan.conditions)} conditions in {folder.path}',
           file=prints, flush=True)
