@@ -22,7 +22,10 @@ autodoc_member_order = 'bysource'
 autodoc_typehints = 'description'
 autodoc_preserve_defaults = True
 autodoc_mock_imports = ['rerun']  # an extra that documentation does not need
-suppress_warnings = ['misc.highlighting_failure']  # shell lines with <placeholders>
+suppress_warnings = [
+    'misc.highlighting_failure',  # shell lines with <placeholders>
+    'ref.python',  # the annotation `type` beside attributes of that name
+]
 
 generate.write(HERE / 'reference' / 'generated')
 
@@ -47,6 +50,12 @@ def _read(app, page, content):
     content[0] = re.sub(r'\[([^\]]*)\]\(([^)#:]+)(?:#[^)]*)?\)', named, text)
 
 
+def _bars(app, what, name, thing, options, lines):
+    """Let ``|e|`` in docstrings be a magnitude, and no substitution of reStructuredText."""
+    lines[:] = [re.sub(r'(``.*?``)|\|', lambda found: found[1] or r'\|', line) for line in lines]
+
+
 def setup(app):
     """As Sphinx calls it."""
     app.connect('source-read', _read)
+    app.connect('autodoc-process-docstring', _bars)

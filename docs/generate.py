@@ -16,8 +16,9 @@ from shared_control.cli import known_commands
 from shared_control_ros.declarations import declarations
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ('shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records')
-"""Packages whose modules people import."""
+PACKAGES = ('shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records',
+            'shared_control_ros')
+"""Packages whose modules people import, the last one to write a node."""
 
 
 def version() -> str:
@@ -74,6 +75,7 @@ def api(package: str) -> str:
     public = [info for info in found if not any(part.startswith('_') for part in info.name.split('.'))]
     text = f'# {package}\n\n{(inspect.getdoc(module) or "").splitlines()[0]}\n'
     for info in public:
-        options = '' if info.ispkg else ':members:\n:undoc-members:\n'
-        text += f'\n## {info.name}\n\n```{{automodule}} {info.name}\n{options}```\n'
+        options = '' if info.ispkg else '   :members:\n   :undoc-members:\n'
+        # autodoc writes reStructuredText, which MyST would show as it is.
+        text += f'\n## {info.name}\n\n```{{eval-rst}}\n.. automodule:: {info.name}\n{options}```\n'
     return text

@@ -77,7 +77,11 @@ def test_the_site_builds_without_a_warning(tmp_path):
     done = subprocess.run([sys.executable, '-m', 'sphinx', '-b', 'html', '--fail-on-warning', '--keep-going', '--quiet',
                            ROOT / 'docs', tmp_path], capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 0, done.stderr
-    assert 'panda_sim_node' in (tmp_path / 'reference' / 'generated' / 'parameters.html').read_text()
+    generated = tmp_path / 'reference' / 'generated'
+    assert 'panda_sim_node' in (generated / 'parameters.html').read_text()
+    for name in ('shared_control.control.sharing.Sharing', 'shared_control_ros.fast_loop.Polled'):
+        page = (generated / f'api_{name.split(".")[0]}.html').read_text()
+        assert f'id="{name}"' in page and '.. py:' not in page
 
 
 def test_the_workflow_runs_what_ci_runs_and_targets_that_exist():
