@@ -196,3 +196,4 @@ def test_who_is_left_out_by_the_experimenter_is_in_no_figure_and_is_named(tmp_pa
     page = write_study_report(folder, tmp_path / 'report').read_text()
     assert re.search(r'participant\s+2: knew the &lt;plan&gt;', page) and 'runs are done' not in page
     assert str(tmp_path) not in page
+    assert 'if it then passed. Runs that never got there' in ' '.join(page.split())

@@ -34,7 +34,7 @@ from .figures import draw_all
 from .measures import Study, load_study, lost_error, run_table, times
 from .participants import participants_table, turnout
 from .statistics import survival
-from .tables import comparison_table, conditions_table, group_table, transfer_table
+from .tables import comparison_table, conditions_table, group_table, runs_in_words, transfer_table
 
 _PAGE = Path(__file__).with_name('study.html')
 THESIS_REDUCTION = 0.976
@@ -114,9 +114,9 @@ def _headlines(study: Study) -> list[tuple[str, str]]:
     for name in study.conditions:
         reached = times(study.of(name))
         median = survival(reached).median.value
+        what = f'{name}: episodes to skilled, median ({reached.reached.sum()} of {runs_in_words(len(reached.reached))} '
         found.append((_number(median, 'g') if math.isfinite(median) else f'over {int(reached.episodes.max())}',
-                      f'{name}: episodes to skilled, median ({reached.reached.sum()} of {len(reached.reached)} runs '
-                      'got there)'))
+                      what + 'got there)'))
     return found
 
 

@@ -66,7 +66,7 @@ def conditions_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
             # Shares are means: the middle half of 1, 1, 1 and 0 would hide the 0.
             statistic: dict = {'statistic': lambda rows: rows.mean(axis=-1)} if measure.unit == '%' else {}
             estimate = bootstrap(scale * known[measure.column].to_numpy(float), known.group.to_numpy(), **statistic)
-            rows.append(_row(condition, measure.label, measure.unit, estimate, _runs(len(known))))
+            rows.append(_row(condition, measure.label, measure.unit, estimate, runs_in_words(len(known))))
     return pd.DataFrame(rows)
 
 
@@ -109,7 +109,7 @@ def group_table(runs: pd.DataFrame) -> pd.DataFrame:
         for column, (label, unit) in quantities.items():
             if column in own and len(known := own.dropna(subset=[column])):
                 estimate = bootstrap(known[column].to_numpy(float), np.zeros(len(known)))
-                rows.append({'group': group, **_row(condition, label, unit, estimate, _runs(len(known)))})
+                rows.append({'group': group, **_row(condition, label, unit, estimate, runs_in_words(len(known)))})
     return pd.DataFrame(rows)
 
 
@@ -134,7 +134,8 @@ def _row(condition: str, label: str, unit: str, estimate: Estimate, basis: str) 
             'high': estimate.high, 'basis': basis}
 
 
-def _runs(count: int) -> str:
+def runs_in_words(count: int) -> str:
+    """How many runs."""
     return '1 run' if count == 1 else f'{count} runs'
 
 
