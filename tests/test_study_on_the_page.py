@@ -9,7 +9,7 @@ import pytest
 from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.keys import Keys
 from shared_control_ros.processes import leave_with_the_parent
-from shared_control_testing.page import Browser
+from shared_control_testing.page import SIZES, Browser
 from teach_page_node.address import free_port
 
 pytestmark = pytest.mark.alone
@@ -92,7 +92,9 @@ def test_a_participant_teaches_is_asked_and_leaves(study, browser, tmp_path):
     participant.chooses('Go on')
     participant.waits_for('Practice')
     browser.wait(lambda: browser.text('role') == 'you teach', 'the seat')
-    assert not browser.part('human-moment').is_displayed(), 'feedback: none'
+    for size in SIZES:
+        browser.size(*size)
+        assert not browser.part('human-moment').is_displayed(), f'feedback: none, at {size}'
     assert not browser.driver.find_elements('css selector', '[data-part=judge]'), 'verdicts: false'
     browser.type('g')
     browser.type(Keys.ENTER)

@@ -260,8 +260,7 @@ def _moment_options(task: Task) -> dict[str, Any]:
                        'textStyle': {'fontSize': 11}},
             'xAxis': {'type': 'value', 'min': -CHART_SECONDS, 'max': 0, 'interval': 5,
                       'axisLabel': {'formatter': '{value} s'}},
-            'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound / 2,
-                      'axisLabel': {'hideOverlap': True}},
+            'yAxis': {'type': 'value', 'min': -bound, 'max': bound, 'interval': bound},
             'series': [{'name': name, 'type': 'line', 'step': 'end', 'symbol': 'none', 'data': [],
                         'lineStyle': {'color': colour, 'width': width,
                                       'type': dash if row == task.axes[-1] else 'dashed'},
@@ -273,7 +272,7 @@ def _episode_options(colour: str, top: float | None = None) -> dict[str, Any]:
     return {**_axes(),
             'xAxis': {'type': 'category', 'data': []},
             'yAxis': {'type': 'value', 'scale': top is None, 'min': None if top is None else 0, 'max': top,
-                      'splitNumber': 2, 'axisLabel': {'hideOverlap': True}},
+                      'splitNumber': 1, **({} if top is None else {'interval': top})},  # room for labels when low
             'series': [{'type': 'line', 'data': [], 'symbolSize': 6, 'lineStyle': {'color': colour},
                         'itemStyle': {'color': colour}, 'areaStyle': {'opacity': 0.12}}]}
 

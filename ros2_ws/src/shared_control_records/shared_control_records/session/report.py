@@ -99,7 +99,8 @@ def _tutor(summary: Summary) -> str:
         return 'unknown'
     if summary.simulated_tutor:
         return f'simulated tutor ({summary.tutor.removeprefix("simulated: ")})'
-    return {'none': 'no tutor', 'keyboard': 'person at the keyboard'}.get(summary.tutor, f'tutor ({summary.tutor})')
+    known = {'none': 'no tutor', 'keyboard': 'person at the keyboard', 'page': 'person on the page'}
+    return known.get(summary.tutor, f'tutor ({summary.tutor})')
 
 
 def _title(summary: Summary) -> str:
