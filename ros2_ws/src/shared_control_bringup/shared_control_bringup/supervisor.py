@@ -122,5 +122,5 @@ class Supervisor:
 
 def _meaning(code: int) -> str:
     if code == -signal.SIGALRM:
-        return f'its loop stood still for {STANDSTILL:.0f} s'
+        return f'it stood still for {STANDSTILL:.0f} s'
     return f'signal {-code}' if code < 0 else f'exit code {code}'

@@ -30,7 +30,10 @@ from .parameters import ParameterError
 from .processes import adopt_node_environment
 from .readiness import tell_ready
 from .real_time import put_loop_above_other_threads
-from .watchdog import let_go
+from .watchdog import leave_within
+
+LEAVE_SECONDS = 10.0
+"""The middleware has once taken more than a minute to take leave; everything has been said by then, s."""
 
 
 class Stop:
@@ -87,7 +90,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     finally:
         if runnable is not None:
             runnable.close()
-            let_go()
+            leave_within(LEAVE_SECONDS)
             runnable.node.destroy_node()
         rclpy.try_shutdown()
 

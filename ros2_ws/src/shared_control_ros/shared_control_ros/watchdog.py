@@ -36,6 +36,6 @@ class Watchdog:
         signal.setitimer(signal.ITIMER_REAL, self._standstill)
 
 
-def let_go() -> None:
-    """No loop is watched any more: the node leaves."""
-    signal.setitimer(signal.ITIMER_REAL, 0.0)
+def leave_within(seconds: float) -> None:
+    """No loop is watched any more: whatever holds it up, the process ends by SIGALRM after ``seconds`` at the latest."""
+    signal.setitimer(signal.ITIMER_REAL, seconds)

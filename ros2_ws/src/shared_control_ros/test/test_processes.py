@@ -12,8 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The environment that nodes are started in."""
+"""The environment that nodes are started in, and how they leave."""
 
+import signal
 import subprocess
 import sys
 
@@ -75,3 +76,30 @@ def test_a_node_runs_where_no_log_can_be_written(domain_id, variables):
         node.terminate()
         node.communicate(timeout=60)
     assert any('ROS_LOG_DIR' in line for line in said)
+
+
+HELD_UP = """
+import sys, time
+import rclpy
+from shared_control_ros import runner
+
+class Visitor:
+    def __init__(self):
+        self.node = rclpy.create_node('visitor')
+        if sys.argv[1] == 'held up':
+            self.node.destroy_node = lambda: time.sleep(100)
+    def run(self, stop):
+        pass
+    def close(self):
+        print('closed', flush=True)
+
+runner.LEAVE_SECONDS = 1.0
+sys.exit(runner.run(Visitor))
+"""
+
+
+@pytest.mark.parametrize(('how', 'code'), [('freely', 0), ('held up', -signal.SIGALRM)])
+def test_a_node_that_is_held_up_when_it_leaves_is_ended(domain_id, how, code):
+    ended = subprocess.run([sys.executable, '-c', HELD_UP, how], timeout=60, capture_output=True, text=True)
+    assert ended.returncode == code, ended.stderr
+    assert 'closed' in ended.stdout
