@@ -37,5 +37,5 @@ class Watchdog:
 
 
 def leave_within(seconds: float) -> None:
-    """No loop is watched any more: whatever holds it up, the process ends by SIGALRM after ``seconds`` at the latest."""
+    """No loop is watched any more: the process ends by SIGALRM after ``seconds``, whatever holds it up."""
     signal.setitimer(signal.ITIMER_REAL, seconds)
