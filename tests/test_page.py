@@ -182,7 +182,7 @@ class TestASessionOnThePage:
     def test_the_person_judges_it(self, browser):
         pressed = 'return [...document.querySelectorAll(".judge [aria-pressed=true]")].map((b) => b.dataset.part)'
         assert browser.text('judged') == 'Episode 1'
-        assert 'discard it: the robot forgets it' in browser.driver.find_element('css selector', '.help').text
+        assert 'is to be forgotten' in browser.driver.find_element('css selector', '.help').text
         browser.type('g')
         browser.wait(lambda: browser.script(pressed) == ['judge-success'], 'the verdict')
         browser.part('judge-discard').click()

@@ -82,19 +82,20 @@ class TestTheKeyboard:
         assert browser.text('role') == 'you teach'
 
 
+@pytest.fixture(scope='class')
+def holds(observer):
+    """``holds(left, up)``: wait until the page's stick is there, to within a pixel."""
+    joys = observer.listen(contract.KEYS)
+
+    def wait_for(left, up):
+        joys.clear()
+        observer.spin(lambda: joys and list(joys[-1].axes) == pytest.approx([left, up], abs=0.02),
+                      what=f'axes {left}, {up} (now {joys[-1].axes if joys else None})')
+    return wait_for
+
+
 class TestTheDrawing:
     """Pulled by a finger or by the mouse, as far as it is held."""
-
-    @pytest.fixture(scope='class')
-    def holds(self, observer):
-        """``holds(left, up)``: wait until the page's stick is there, to within a pixel."""
-        joys = observer.listen(contract.KEYS)
-
-        def wait_for(left, up):
-            joys.clear()
-            observer.spin(lambda: joys and list(joys[-1].axes) == pytest.approx([left, up], abs=0.02),
-                          what=f'axes {left}, {up} (now {joys[-1].axes if joys else None})')
-        return wait_for
 
     @staticmethod
     def shows_ring(browser):
