@@ -187,6 +187,10 @@ class TestASessionOnThePage:
         browser.wait(lambda: browser.script(pressed) == ['judge-success'], 'the verdict')
         browser.part('judge-discard').click()
         browser.wait(lambda: browser.script(pressed) == ['judge-discard'], 'the other verdict')
+        for size in SIZES:
+            browser.size(*size)
+            assert browser.script(TOO_LONG) == [], f'words that do not fit at {size}'
+        browser.size(1000, 700)
         browser.wait(lambda: browser.chart('returns') == [[]], 'a chart without it')
 
     def test_nothing_went_wrong_in_the_browser(self, browser):
@@ -200,6 +204,8 @@ class TestASessionOnThePage:
         assert 'Stopped before the end' in said and 'Traceback' not in said
 
 
+TOO_LONG = ('return [...document.querySelectorAll("button")].filter((b) => b.scrollWidth > b.clientWidth + 1)'
+            '.map((b) => b.textContent)')
 NEEDED = ('.phase', '[data-part=close-view]', '[data-key=left]', '[data-key=space]', '[data-key=right]',
           '[data-part=start]', '[data-part=pause]', '[data-part=stop]')
 BOX = ('const b = document.querySelector("%s").getBoundingClientRect();'
