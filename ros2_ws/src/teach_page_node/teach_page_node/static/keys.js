@@ -51,9 +51,12 @@ export function listenToKeys(send) {
   function light() {
     state().forEach((down, i) => key(i).classList.toggle("down", counts() && down === 1));
   }
-  function letGo() {
+  function forget() {
     held.forEach((by) => by.clear());
     sticks.forEach((stick) => stick.letGo());
+  }
+  function letGo() {
+    forget();
     if (isActive) send({ let_go: true });
     light();
   }
@@ -115,10 +118,7 @@ export function listenToKeys(send) {
 
   return {
     setActive(active) {
-      if (isActive && !active) {
-        held.forEach((by) => by.clear());
-        sticks.forEach((stick) => stick.letGo());
-      }
+      if (isActive && !active) forget();
       isActive = active;
       setFocus(document.hasFocus() && !document.hidden);
       light();
