@@ -64,7 +64,7 @@ class Transitions:
         """Remember an episode, number ``number`` (from 1)."""
         assert episode.last_observation is not None, 'the episode has not ended'
         seen = np.array([*episode.observations, episode.last_observation])[:, :self.size]
-        moments = np.array(episode.applied) / self._task.scale
+        moments = episode.applied_actions
         change = np.diff(seen, axis=0, prepend=seen[:1])
         before = np.concatenate([np.zeros_like(moments[:1]), moments[:-1]])
         rows = {'states': np.concatenate([seen[:-1], change[:-1], before], axis=1), 'moments': moments,

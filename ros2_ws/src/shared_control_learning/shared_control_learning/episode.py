@@ -107,6 +107,11 @@ class Episode:
         return float(np.divide(human, both, out=np.zeros_like(both), where=both > 0.0).mean()) if len(self) else 0.0
 
     @property
+    def applied_actions(self) -> np.ndarray:
+        """The moments that counted, whoever gave them, in actions, (steps, k); beyond -1..1 where both pushed one way."""
+        return np.array(self.applied) / self.task.scale
+
+    @property
     def held(self) -> np.ndarray:
         """In which steps the human held a moment, (steps,), bool."""
         return _magnitudes(self.human) != 0.0

@@ -53,7 +53,7 @@ class BehaviourCloning(LinearLearner):
         """See :class:`Learner`. The action shown is the moment that counted: what the person wanted in all."""
         shown = self.shows(episode)
         self._shown.add(observations=np.array(episode.observations)[shown],
-                        actions=(np.array(episode.applied) / self.task.scale).clip(-1.0, 1.0)[shown])
+                        actions=episode.applied_actions.clip(-1.0, 1.0)[shown])
         if len(self._shown):
             seen = np.hstack([self._shown['observations'], np.ones((len(self._shown), 1))]).astype(float)
             solution = np.linalg.solve(seen.T @ seen + self.settings.ridge * np.eye(seen.shape[1]),

@@ -147,7 +147,7 @@ class Replay:
         ended[-1] = episode.failed
         self.memory.add(
             observations=seen[:-1], next=seen[1:], ended=ended, rewards=np.array(episode.rewards)[:, np.newaxis],
-            actions=(np.array(episode.applied) / episode.task.scale).clip(-1.0, 1.0),
+            actions=episode.applied_actions.clip(-1.0, 1.0),
             own_actions=np.array(episode.actions).clip(-1.0, 1.0),
             intervened=episode.held[:, np.newaxis])
 
