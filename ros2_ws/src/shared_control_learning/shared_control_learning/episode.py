@@ -108,7 +108,7 @@ class Episode:
 
     @property
     def applied_actions(self) -> np.ndarray:
-        """The moments that counted, whoever gave them, in actions, (steps, k); beyond -1..1 where both pushed one way."""
+        """The moments that counted, whoever gave them, in actions, (steps, k); may lie beyond -1..1."""
         return np.array(self.applied) / self.task.scale
 
     @property
