@@ -1,16 +1,21 @@
 """The lockstep loop of the running graph, unpaced, beside the bare exchange of the same messages.
 
-Simulator and controller run as they do in a session, with nobody else on the graph; the simulator times its ticks
-itself (state published -> torque received -> physics stepped). The two alternate, so that a machine that grows slower
+Simulator and controller run with nobody else on the graph; the simulator times its ticks itself (state published ->
+torque received -> physics stepped). All processes run on the core that a session gives to the loop, since where the
+kernel places two processes changes the times of either by half. The two alternate, so that a machine that grows slower
 in the meantime slows both.
 """
 
 import json
+import os
 import signal
 import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -22,28 +27,43 @@ from rclpy.node import Node
 from shared_control_ros import contract
 from shared_control_ros.processes import node_environment, node_module
 
-ROUNDS = 3
-SECONDS = 8.0
-DOMAINS = iter(range(80, 100))
+ROUNDS = 7
+SECONDS = 6.0
+DOMAINS = cycle(range(80, 100))
+LOOP = {'panda_sim_node': ['paced:=false'], 'torque_ctrl_node': ['enabled:=true']}
+"""The nodes of the loop, and their parameters."""
 
 
-def ping_pong() -> dict[str, float]:
+def to_the_loops_core() -> None:
+    """Keep this process on the core that a session gives to the loop."""
+    os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+
+
+def ping_pong(*options: str) -> dict[str, float]:
     """p50 and p99 of the bare exchange, ms."""
+    script = Path(__file__).with_name('pingpong.py')
     output = subprocess.run(
-        [sys.executable, str(Path(__file__).with_name('pingpong.py'))], check=True, capture_output=True, text=True,
-        env={**node_environment(), 'ROS_DOMAIN_ID': str(next(DOMAINS))}).stdout
+        [sys.executable, str(script), *options], check=True, capture_output=True, text=True,
+        env={**node_environment(), 'ROS_DOMAIN_ID': str(next(DOMAINS))}, preexec_fn=to_the_loops_core).stdout
     return json.loads(output.splitlines()[-1])
 
 
 def ticks(seconds: float = SECONDS) -> dict[str, float]:
     """p50 and p99 of the graph's tick, ms, as the simulator reports them after ``seconds``."""
+    with loop({name: ['-m', node_module(name)] for name in LOOP}) as domain:
+        return last_report(domain, seconds)
+
+
+@contextmanager
+def loop(python: dict[str, list[str]]) -> Iterator[int]:
+    """The nodes of the loop, on its core, each by what ``python`` is called with; gives the domain they are in."""
     domain = next(DOMAINS)
     environment = {**node_environment(), 'ROS_DOMAIN_ID': str(domain)}
-    nodes = [subprocess.Popen([sys.executable, '-m', node_module(name), '--ros-args', '-p', *parameters],
-                              env=environment, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-             for name, parameters in (('panda_sim_node', ['paced:=false']), ('torque_ctrl_node', ['enabled:=true']))]
+    nodes = [subprocess.Popen([sys.executable, *python[name], '--ros-args', '-p', *parameters], env=environment,
+                              stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, preexec_fn=to_the_loops_core)
+             for name, parameters in LOOP.items()]
     try:
-        return _last_report(domain, seconds)
+        yield domain
     finally:
         for node in nodes:
             node.send_signal(signal.SIGINT)
@@ -51,7 +71,8 @@ def ticks(seconds: float = SECONDS) -> dict[str, float]:
             node.wait()
 
 
-def _last_report(domain: int, seconds: float) -> dict[str, float]:
+def last_report(domain: int, seconds: float) -> dict[str, float]:
+    """p50 and p99 of the ticks, ms, once the simulator has run for ``seconds``."""
     context = Context()
     rclpy.init(context=context, domain_id=domain)
     node = Node('bench', context=context)
@@ -76,15 +97,19 @@ def _last_report(domain: int, seconds: float) -> dict[str, float]:
 
 
 def measure() -> dict[str, Any]:
-    """``tick_ms``, ``pingpong_ms`` and their ``ratio``, medians over the rounds, with the rounds themselves."""
+    """``tick_ms``, ``pingpong_ms`` and their ``ratio``, medians over the rounds, with the rounds themselves; the same
+    for the exchange of bytes made beforehand (``raw``), which is what the nodes of the loop do."""
     rounds = []
     for _ in range(ROUNDS):
-        bare, graph = ping_pong(), ticks()
-        rounds.append({'pingpong_ms': bare, 'tick_ms': graph, 'ratio': round(graph['p50'] / bare['p50'], 3)})
+        bare, raw, tick = ping_pong(), ping_pong('--raw'), ticks()
+        rounds.append({'pingpong_ms': bare, 'pingpong_raw_ms': raw, 'tick_ms': tick,
+                       'ratio': round(tick['p50'] / bare['p50'], 3), 'ratio_raw': round(tick['p50'] / raw['p50'], 3)})
 
     def median(name: str) -> dict[str, float]:
         return {key: round(statistics.median(r[name][key] for r in rounds), 4) for key in ('p50', 'p99')}
 
-    ratios = [r['ratio'] for r in rounds]
-    return {'tick_ms': median('tick_ms'), 'pingpong_ms': median('pingpong_ms'),
-            'ratio': statistics.median(ratios), 'ratio_min_max': [min(ratios), max(ratios)], 'rounds': rounds}
+    figures: dict[str, Any] = {name: median(name) for name in ('tick_ms', 'pingpong_ms', 'pingpong_raw_ms')}
+    for name in ('ratio', 'ratio_raw'):
+        ratios = [r[name] for r in rounds]
+        figures |= {name: statistics.median(ratios), f'{name}_min_max': [min(ratios), max(ratios)]}
+    return {**figures, 'rounds': rounds}

@@ -1,4 +1,4 @@
-"""A long session with a simulated tutor: whether memory, descriptors, threads, shared memory or ticks grow.
+"""A long session with a simulated tutor: what each node takes, and whether memory, descriptors, threads or ticks grow.
 
     python benchmarks/soak.py --minutes 60        # what `make soak MINUTES=60` runs
 
@@ -8,6 +8,7 @@ slope is a failure (exit code 1).
 """
 
 import json
+import os
 import sys
 import tempfile
 import time
@@ -35,19 +36,38 @@ class Sample:
 
     minute: float
     of: str
+    cpu_percent: float = 0.0
+    """Of one core, since the sample before."""
     memory_mb: float = 0.0
     descriptors: float = 0.0
     threads: float = 0.0
     shared_memory_mb: float = 0.0
     tick_p50_ms: float = 0.0
     tick_p99_ms: float = 0.0
+    late_ticks_percent: float = 0.0
+    """Of all ticks so far, those that took more than a millisecond."""
 
 
-def of_process(minute: float, name: str, process: int) -> Sample:
-    """A process by its id."""
-    status = dict(line.split(':', 1) for line in Path(f'/proc/{process}/status').read_text().splitlines())
-    return Sample(minute, name, memory_mb=int(status['VmRSS'].split()[0]) / 1024,
-                  descriptors=len(list(Path(f'/proc/{process}/fd').iterdir())), threads=int(status['Threads']))
+class Processes:
+    """The processes of a session, by name."""
+
+    def __init__(self) -> None:
+        self._cpu: dict[int, tuple[float, float]] = {}
+        """By process id: when it was looked at, and what it had used by then, s."""
+
+    def sample(self, minute: float, name: str, process: int) -> Sample:
+        """A process by its id."""
+        status = dict(line.split(':', 1) for line in Path(f'/proc/{process}/status').read_text().splitlines())
+        return Sample(minute, name, cpu_percent=self._cpu_percent(process),
+                      memory_mb=int(status['VmRSS'].split()[0]) / 1024,
+                      descriptors=len(list(Path(f'/proc/{process}/fd').iterdir())), threads=int(status['Threads']))
+
+    def _cpu_percent(self, process: int) -> float:
+        fields = Path(f'/proc/{process}/stat').read_text().rpartition(')')[2].split()
+        now, used = time.monotonic(), (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+        before, used_before = self._cpu.get(process, (now, used))
+        self._cpu[process] = now, used
+        return 100.0 * (used - used_before) / (now - before) if now > before else 0.0
 
 
 def shared_memory_mb() -> float:
@@ -95,19 +115,19 @@ def soak(minutes: float, every: float, folder: Path, domain: int) -> list[Sample
     session = Session(['--tutor', 'sim', '--minutes', str(minutes + 2), '--episodes', '0', '--test-episodes', '0',
                        '--output', str(folder / 'session')], stdout=log, stderr=log)
     samples: list[Sample] = []
+    processes = Processes()
     try:
         observer.spin(lambda: _ticks(diagnostics), 120.0, 'ticks of the simulator')
         begin = time.monotonic()
+        _look(processes, session, 0.0)
         for number in tqdm(range(1, int(minutes / every) + 1), unit='sample', disable=None):
             while time.monotonic() < begin + 60 * every * number:
                 observer.spin_for(0.5)
             if session.process.poll() is not None:
                 raise SystemExit(f'the session ended early: {(folder / "session.log").read_text()[-2000:]}')
             minute = every * number
-            fresh = [of_process(minute, name, process) for name in NODES if (process := session.node(name))]
-            fresh.append(of_process(minute, 'session', session.process.pid))
-            p50, p99 = _ticks(diagnostics) or (0.0, 0.0)
-            fresh.append(Sample(minute, 'all', shared_memory_mb=shared_memory_mb(), tick_p50_ms=p50, tick_p99_ms=p99))
+            fresh = _look(processes, session, minute)
+            fresh.append(Sample(minute, 'all', shared_memory_mb=shared_memory_mb(), **(_ticks(diagnostics) or {})))
             diagnostics.clear()
             for sample in fresh:
                 print('  '.join(f'{name} {value:.2f}' if isinstance(value, float) else f'{value:24}'
@@ -122,13 +142,21 @@ def soak(minutes: float, every: float, folder: Path, domain: int) -> list[Sample
     return samples
 
 
-def _ticks(diagnostics: list[DiagnosticArray]) -> tuple[float, float] | None:
-    """The simulator's newest report of its ticks: p50 and p99, ms."""
+def _look(processes: Processes, session: Session, minute: float) -> list[Sample]:
+    """A sample of each node, and of the session itself."""
+    nodes = {name: process for name in NODES if (process := session.node(name))}
+    return [processes.sample(minute, name, process)
+            for name, process in {**nodes, 'session': session.process.pid}.items()]
+
+
+def _ticks(diagnostics: list[DiagnosticArray]) -> dict[str, float] | None:
+    """The simulator's newest report of its ticks, as figures of a sample."""
     for message in reversed(diagnostics):
         for status in message.status:
             values = {pair.key: pair.value for pair in status.values}
             if status.name.endswith('panda_sim_node') and 'tick_p50_ms' in values:
-                return float(values['tick_p50_ms']), float(values['tick_p99_ms'])
+                return {'tick_p50_ms': float(values['tick_p50_ms']), 'tick_p99_ms': float(values['tick_p99_ms']),
+                        'late_ticks_percent': 100.0 * int(values['late_ticks']) / max(int(values['ticks']), 1)}
     return None
 
 

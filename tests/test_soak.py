@@ -37,4 +37,5 @@ def test_a_short_one(tmp_path, domain_id):
     assert {sample['of'] for sample in samples} >= {'panda_sim_node', 'torque_ctrl_node', 'ppo_agent_node', 'session'}
     ticks = [sample['tick_p50_ms'] for sample in samples if sample['of'] == 'all']
     assert len(ticks) == 2 and max(ticks) > 0.0
+    assert all(sample['cpu_percent'] > 0.0 for sample in samples if sample['of'] == 'panda_sim_node')
     assert all(sample['memory_mb'] > 10.0 and sample['threads'] >= 1 for sample in samples if sample['of'] != 'all')

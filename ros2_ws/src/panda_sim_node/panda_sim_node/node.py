@@ -19,7 +19,6 @@ pushes at the tray on /disturbance. Services: simulator/reset (Trigger), simulat
 simulator/rest (SetBool), simulator/set_parameters (SetParameters: seed).
 """
 
-import gc
 import time
 from dataclasses import replace
 
@@ -36,6 +35,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
+from shared_control_ros.real_time import keep_loop_on_time
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
@@ -111,9 +111,7 @@ class PandaSimNode:
     def run(self, stop: Stop) -> None:
         """Tick until told to stop."""
         began = self._deadline = time.monotonic()
-        # What a tick makes is freed by reference counts; a collection in mid-tick would only make it late.
-        gc.freeze()
-        gc.disable()
+        keep_loop_on_time()
         while not stop.requested:
             if self._tick % TICKS_PER_ACTION == 0:
                 self._between_actions()
@@ -246,8 +244,8 @@ class PandaSimNode:
         if self._commands.publisher_count() == 0:
             problems[self._commands.topic_name] = 'no publisher'
         self._diagnostics.publish(
-            problems, ticks=self._tick, tick_p50_ms=f'{self._times.quantile_ms(0.5):.2f}',
-            tick_p99_ms=f'{self._times.quantile_ms(0.99):.2f}', late_ticks=self._times.late,
+            problems, ticks=self._tick, tick_p50_ms=f'{self._times.quantile_ms(0.5):.3f}',
+            tick_p99_ms=f'{self._times.quantile_ms(0.99):.3f}', late_ticks=self._times.late,
             running_seconds=f'{self._running_seconds:.3f}', simulated_seconds=f'{simulated:.3f}',
             missed_commands=self._missed, paused=self._paused, task=self._task_name)
 

@@ -16,12 +16,12 @@
 
 import numpy as np
 
-_BIN = 1e-5
-_BINS = 10_000
+_BIN = 2e-6
+_BINS = 50_000
 
 
 class TickTimes:
-    """A histogram of tick durations with bins of 10 us up to 100 ms: quantiles of a run of any length."""
+    """A histogram of tick durations with bins of 2 us up to 100 ms: quantiles of a run of any length."""
 
     def __init__(self) -> None:
         self._counts = np.zeros(_BINS, np.int64)

@@ -14,6 +14,8 @@
 
 """Receiving by hand, beside an executor that serves the rest."""
 
+import subprocess
+import sys
 import time
 
 from rclpy.node import Node
@@ -66,3 +68,10 @@ def test_background_serves_when_polled(observer):
     assert future.result().success
     background.close()
     server.destroy_node()
+
+
+def test_a_loop_is_not_collected_from_and_has_timers_that_are_on_time():
+    code = ('import gc; from shared_control_ros.real_time import keep_loop_on_time; keep_loop_on_time(); '
+            'print(gc.isenabled(), open("/proc/self/timerslack_ns").read().strip())')
+    said = subprocess.run([sys.executable, '-c', code], check=True, capture_output=True, text=True).stdout
+    assert said.split() == ['False', '1']

@@ -19,7 +19,6 @@ Sums the moments of human and agent, turns them into a wrench at the tray, and p
 /human/applied_wrench and /agent/applied_wrench.
 """
 
-import gc
 import time
 
 import numpy as np
@@ -36,6 +35,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import ParameterError, declare
+from shared_control_ros.real_time import keep_loop_on_time
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
@@ -122,9 +122,7 @@ class TorqueCtrlNode:
 
     def run(self, stop: Stop) -> None:
         """Answer joint states until told to stop."""
-        # What a tick makes is freed by reference counts; a collection in mid-tick would only make it late.
-        gc.freeze()
-        gc.disable()
+        keep_loop_on_time()
         while not stop.requested:
             message = self._joint_states.wait(SILENCE)
             if message is None:

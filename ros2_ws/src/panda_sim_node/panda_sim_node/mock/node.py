@@ -20,7 +20,6 @@ robot/error_recovery (Trigger), simulator/reset (Trigger), simulator/set_paramet
 simulator/pause and simulator/rest (SetBool, refused: a robot's time does not stand still).
 """
 
-import gc
 import time
 
 import numpy as np
@@ -36,6 +35,7 @@ from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
+from shared_control_ros.real_time import keep_loop_on_time
 from shared_control_ros.robot_inputs import PushInput, TorqueInput
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
@@ -105,9 +105,7 @@ class MockPandaNode:
 
     def run(self, stop: Stop) -> None:
         """Tick until told to stop."""
-        # What a tick makes is freed by reference counts; a collection in mid-tick would only make it late.
-        gc.freeze()
-        gc.disable()
+        keep_loop_on_time()
         # The robot's clock: stamps are whole milliseconds, and policy ticks are multiples of 20 ms.
         self._start_ns = time.time_ns() // POLICY_PERIOD_NS * POLICY_PERIOD_NS
         self._due = time.monotonic()
