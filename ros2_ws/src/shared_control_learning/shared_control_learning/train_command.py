@@ -15,6 +15,7 @@
 """``shared-control train``: teach a policy in this process, without a graph."""
 
 import argparse
+import os
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -56,7 +57,7 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
                 chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.episodes,
                 until_skilled=args.until_skilled, human_only=args.human_only, physics=args.physics, folder=args.output,
                 tensorboard=True, evaluate_every=args.evaluate_every, sharing=Sharing(args.sharing),
-                callbacks=_Bar(bar, args.output))
+                callbacks=_Bar(bar, args.output), processes=len(os.sched_getaffinity(0)))
     except KeyboardInterrupt:
         print(f'stopped; go on with: shared-control train --resume {args.output}', file=sys.stderr)
         return 130

@@ -34,6 +34,7 @@ from .callbacks import Callbacks
 from .episode import Episode
 from .episode_table import TABLE_NAME, EpisodeTable
 from .evaluation.evaluate import as_tested, passes
+from .evaluation.parallel_test import ParallelTest
 from .learn import learn
 from .learner import Learner
 from .policy_file import POLICY_NAME, load_policy, save_policy
@@ -103,7 +104,8 @@ _TRAINING_RUN = TypeAdapter(TrainingRun)
 
 def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_skilled: bool = True,
           human_only: bool = False, physics: str = 'bullet', folder: Path | None = None, tensorboard: bool = False,
-          evaluate_every: int = 1, sharing: Sharing = ADDITIVE, callbacks: Callbacks | None = None) -> TrainingRun:
+          evaluate_every: int = 1, sharing: Sharing = ADDITIVE, callbacks: Callbacks | None = None,
+          processes: int = 1) -> TrainingRun:
     """Teach a policy in this process, by a simulated tutor or by nobody.
 
     A run that was stopped goes on from its folder, and ends as if it had never stopped.
@@ -121,6 +123,8 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
         evaluate_every: test after so many episodes each, 0: never.
         sharing: what counts of the two moments.
         callbacks: called for the episodes, each after its test.
+        processes: test by so many at once, five at the most, with the same results. A script that asks for more than
+            one must be guarded by ``if __name__ == '__main__'``.
 
     Raises:
         TrainingError: ``folder`` holds another run.
@@ -138,18 +142,23 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
     person = None if tutor is None else make_tutor(tutor, preset.task, seed, learner.episode)
     env = SharedControlEnv(LocalPlant(preset.task, person, physics, sharing=sharing), preset.task, human_only)
     test_env = SharedControlEnv(LocalPlant(preset.task, physics=physics), as_tested(preset.task))
+    helpers = ParallelTest(preset.task, physics, processes) if processes > 1 and evaluate_every else None
     try:
         learn(learner, env, episodes, _Keeper(
-            learner, run, folder, tensorboard, test_env, evaluate_every, until_skilled, callbacks or Callbacks()))
+            learner, run, folder, tensorboard, test_env, helpers, evaluate_every, until_skilled,
+            callbacks or Callbacks()))
     finally:
+        if helpers is not None:
+            helpers.close()
         env.close()
         test_env.close()
     return run
 
 
-def passes_now(learner: Learner, test_env: SharedControlEnv, seed: int) -> bool:
+def passes_now(learner: Learner, test_env: SharedControlEnv, seed: int, helpers: ParallelTest | None = None) -> bool:
     """Whether the learner of the run ``seed`` passes the test that belongs to the episodes it has learned from."""
-    return passes(learner.act, test_env, episode_seed(TEST_SEED + seed, learner.episode))
+    test = episode_seed(TEST_SEED + seed, learner.episode)
+    return passes(learner.act, test_env, test) if helpers is None else helpers.passes(learner, test_env, test)
 
 
 def read_run(folder: Path) -> TrainingRun:
@@ -193,8 +202,10 @@ class _Keeper(Callbacks):
     """Tests, keeps and passes on after each episode."""
 
     def __init__(self, learner: Learner, run: TrainingRun, folder: Path | None, tensorboard: bool,
-                 test_env: SharedControlEnv, evaluate_every: int, until_skilled: bool, watcher: Callbacks):
-        self._learner, self._run, self._folder, self._test_env = learner, run, folder, test_env
+                 test_env: SharedControlEnv, helpers: ParallelTest | None, evaluate_every: int, until_skilled: bool,
+                 watcher: Callbacks):
+        self._learner, self._run, self._folder = learner, run, folder
+        self._test_env, self._helpers = test_env, helpers
         self._evaluate_every, self._until_skilled, self._watcher = evaluate_every, until_skilled, watcher
         self._started = time.monotonic() - run.seconds
         self._logger = configure(str(folder / TENSORBOARD_NAME), ['tensorboard']) if folder and tensorboard else None
@@ -229,7 +240,7 @@ class _Keeper(Callbacks):
         run.interventions.append(episode.interventions)
         run.noise_shares.append(self._noise_share)
         if self._evaluate_every and episode.number % self._evaluate_every == 0:
-            run.tests.append((episode.number, passes_now(self._learner, self._test_env, run.seed)))
+            run.tests.append((episode.number, passes_now(self._learner, self._test_env, run.seed, self._helpers)))
         run.seconds = time.monotonic() - self._started
         if self._folder is not None:
             self._table.append(episode)

@@ -16,7 +16,6 @@
 
 import multiprocessing
 import os
-import signal
 from collections import deque
 from collections.abc import Generator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -24,7 +23,7 @@ from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import NamedTuple
 
-from shared_control.processes import leave_with_the_parent
+from shared_control.processes import begin_worker
 
 POLL_SECONDS = 0.2
 
@@ -50,7 +49,7 @@ def on_this_machine(folder: Path, names: Sequence[str], workers: int) -> Generat
             while waiting and len(running) < workers:
                 name = waiting.popleft()
                 # A pool for each job: a process that is killed breaks its pool, and the others are to go on.
-                pool = ProcessPoolExecutor(1, multiprocessing.get_context('spawn'), _begin, (os.getpid(),))
+                pool = ProcessPoolExecutor(1, multiprocessing.get_context('spawn'), begin_worker, (os.getpid(),))
                 running[pool.submit(_do, folder, name)] = name, pool
             ended, _ = wait(running, POLL_SECONDS, FIRST_COMPLETED)
             outcomes = []
@@ -92,18 +91,6 @@ def on_ray(folder: Path, names: Sequence[str], address: str) -> Generator[list[O
             yield [Outcome(running.pop(reference), _ray_error(ray, reference)) for reference in ended]
     finally:
         ray.shutdown()
-
-
-def _begin(parent: int) -> None:
-    """Prepare a process for its job, before that imports what takes seconds."""
-    leave_with_the_parent()
-    if os.getppid() != parent:
-        raise ProcessLookupError('the study ended while this process began')
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then ends its processes
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for stream in (1, 2):  # libraries greet whoever imports them
-        os.dup2(nowhere, stream)
-    os.environ['OMP_NUM_THREADS'] = '1'
 
 
 def _do(folder: Path, name: str) -> None:
