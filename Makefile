@@ -1,8 +1,9 @@
 # Everything runs in an environment of its own, .venv/. `make help` lists the targets.
 SHELL := /bin/bash
-PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# The interpreter of the environment that is there, until another is asked for.
+PYTHON ?= $(or $(wildcard $(BIN)/python),python3)
 SRC := ros2_ws/src
 MINUTES := 60
 RUNS := 50

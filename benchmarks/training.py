@@ -1,5 +1,7 @@
-"""How long learning takes on one core: from nothing to skilled, tests included, and the pause after an episode."""
+"""How long learning takes: from nothing to skilled, tests included, by one process and by all cores; and the pause after an
+episode."""
 
+import os
 import statistics
 from collections.abc import Sequence
 from typing import Any
@@ -31,7 +33,7 @@ def measure() -> dict[str, Any]:
 
     A seed is run with the one physics and at once with the other. ``in_bullets``: what all seeds take with MuJoCo, in
     what they take with PyBullet; ``episode_in_bullets``: the same for an episode with its test, since a seed may need
-    more episodes with the one than with the other.
+    more episodes with the one than with the other. ``coached_by_all_cores``: the same runs, tested by all cores.
     """
     pauses = _Pauses()
     figures: dict[str, Any] = {'mujoco': {}}
@@ -45,6 +47,9 @@ def measure() -> dict[str, Any]:
         episodes = sum(run.episodes for run in mujoco) / sum(run.episodes for run in bullet)
         figures['mujoco'] |= {f'{name}_in_bullets': round(ratio, 3),
                               f'{name}_episode_in_bullets': round(ratio / episodes, 3)}
+    together = [train(preset('coached'), profile('expert'), seed, EPISODES, processes=len(os.sched_getaffinity(0)))
+                for seed in SEEDS]
+    figures |= _figures('coached_by_all_cores', together)
     return {'train': figures, 'learn': {
         'pause_s': round(statistics.median(pauses.seconds), 3), 'pause_s_max': round(max(pauses.seconds), 3)}}
 
