@@ -1,5 +1,4 @@
-"""How long learning takes: from nothing to skilled, tests included, by one process and by all cores; and the pause after an
-episode."""
+"""How long learning takes, tests included: from nothing to skilled, by one process and by all cores; and its pauses."""
 
 import os
 import statistics
