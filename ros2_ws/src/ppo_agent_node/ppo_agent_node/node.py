@@ -24,6 +24,7 @@ is unlearned and taught again; later it is only labelled.
 """
 
 import json
+import os
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -64,6 +65,8 @@ STEPS_PER_NOTE = 50
 """How far an episode has come is kept once a second: what a killed agent was taught is known but for that."""
 TRY_AGAIN_SECONDS = 0.5
 """Between a void episode and the next try, s."""
+VOID_IN_A_ROW = 3
+"""After so many void episodes nobody should hope that it passes by itself."""
 
 
 class _Stopped(Exception):
@@ -130,6 +133,8 @@ class PpoAgentNode(Callbacks):
         self._episode: Episode | None = None
         self._finish = False
         self._repeat = False
+        self._void = 0
+        """Episodes in a row that were void, and not because the person wanted it."""
         self._ended = 0.0
         """When the last episode of teaching did, s of the monotonic clock."""
         self._training = TrainingTopics(node)
@@ -304,6 +309,7 @@ class PpoAgentNode(Callbacks):
 
     def learning_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
+        self._void = 0
         self._ended = time.monotonic()
         self._training.episode_return(episode.episode_return)
         self._verdicts.episode_ended(episode)
@@ -339,6 +345,7 @@ class PpoAgentNode(Callbacks):
 
     def episode_tested(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
+        self._void = 0
         self._training.episode_return(episode.episode_return)
         self._verdicts.episode_ended(episode)
         if self._table is not None:
@@ -347,7 +354,14 @@ class PpoAgentNode(Callbacks):
 
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""
+        self._void += not self._repeat
         self.node.get_logger().warning(f'the episode is void: {error}')
+        if self._void and self._void % VOID_IN_A_ROW == 0:
+            cores, load = len(os.sched_getaffinity(0)), os.getloadavg()[0]
+            self.node.get_logger().error(
+                f'{self._void} episodes in a row were void, and none will count like this: end other programs (load '
+                f'{load:.1f} on {cores} cores) and look with `shared-control doctor`, or end the session and go on '
+                'with it later')
         self._break_off(str(error))
         again = time.monotonic() + TRY_AGAIN_SECONDS  # whatever is the matter may last
         while time.monotonic() < again:

@@ -17,6 +17,7 @@
 import signal
 
 import pytest
+from ppo_agent_node.node import VOID_IN_A_ROW
 from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import load_policy, read_description
 from shared_control_ros import contract
@@ -71,6 +72,21 @@ def test_teaches_tests_and_keeps_everything(graph, start_node, observer, phases,
     learner = load_policy(output / 'policy.safetensors')
     assert (learner.episode, learner.seed, learner.name) == (1, 5, 'guided')
     assert float(taught['return']) == pytest.approx(listened[contract.EPISODE_RETURN.name][0].data, rel=1e-4)
+
+
+def test_says_what_to_do_when_episodes_are_void_again_and_again(graph, start_node, observer, output):
+    left = observer.listen(contract.TIME_LEFT)
+    agent = start_node('ppo_agent_node', output=output, episode_seconds=5.0)
+    simulator = graph
+    for _ in range(VOID_IN_A_ROW):
+        assert 'in a row were void' not in agent.log()
+        left.clear()
+        observer.spin(lambda: left and left[-1].data < 4.5, 60.0, 'an episode is under way')
+        simulator.process.kill()
+        simulator.process.wait()
+        simulator = start_node('panda_sim_node')
+    agent.wait_for_log(f'{VOID_IN_A_ROW} episodes in a row were void', 60.0)
+    assert 'end other programs' in agent.log() and 'shared-control doctor' in agent.log()
 
 
 def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, output):
