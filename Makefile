@@ -10,8 +10,8 @@ RUNS := 50
 CHECK_SCHEMA := $(BIN)/check-jsonschema --quiet --builtin-schema
 export OMP_NUM_THREADS := 1
 
-.PHONY: help setup demo session test coverage lint lint-github docs links wheel bench faults soak freeze flaky pictures weight \
-    count colcon clean
+.PHONY: help setup demo session test coverage lint lint-github docs links wheel bench bench-growth faults soak freeze flaky \
+    pictures weight count colcon clean
 
 help:
 	@echo 'make demo     a session with a simulated tutor, then the robot alone (out/demo)'
@@ -23,12 +23,13 @@ help:
 	@echo 'make wheel    sdist and wheel (dist/), each installed and tried in an empty environment'
 	@echo 'make lint     ruff, mypy, who may import whom, the linters of ROS, workflows and templates'
 	@echo 'make bench    measurements (out/bench.json)'
+	@echo 'make bench-growth  time and memory by length of session, readers, participants, sessions (out/growth)'
 	@echo 'make faults   faults at random moments of live sessions, and what must hold in spite of them (out/faults.json)'
 	@echo 'make soak     a long session, and whether anything grows; MINUTES=60 (out/soak.json)'
 	@echo 'make freeze   a real-time loop beside a load, with the priorities that once froze it and with ours; MINUTES=60'
 	@echo 'make flaky    the tests that ever failed by chance, RUNS=50 times'
 	@echo 'make pictures the page in all its states, at five sizes (out/pictures)'
-	@echo 'make weight   what the controller alone installs (out/weight.json)'
+	@echo 'make weight   what installations weigh and how long pip takes; 15 minutes and 5 GB (out/install.json)'
 	@echo 'make count    the size of the code, and what is tied to one task or robot, at the first version and now'
 	@echo 'make colcon   colcon build and colcon test of the workspace'
 	@echo 'make setup    the environment alone; PYTHON=python3.12 chooses another interpreter'
@@ -98,10 +99,13 @@ pictures: setup
 	$(BIN)/python tools/pictures.py out/pictures
 
 weight: setup
-	$(BIN)/python tools/weight.py --output out/weight.json
+	$(BIN)/python benchmarks/bench.py --only install --output out/install.json
 
 bench: setup
 	$(BIN)/python benchmarks/bench.py --output out/bench.json
+
+bench-growth: setup
+	$(BIN)/python benchmarks/growth.py $(ARGS)
 
 faults: setup
 	$(BIN)/python benchmarks/faults.py $(ARGS)

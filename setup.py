@@ -23,6 +23,8 @@ EXTRAS = {
     'mujoco': ('shared_control_sim',),
     'learn': ('shared_control_sim', 'shared_control_learning'),
     'study': ('shared_control_sim', 'shared_control_learning', 'shared_control_records'),
+    'export': ('shared_control_sim', 'shared_control_learning', 'shared_control_records'),
+    'tensorboard': ('shared_control_sim', 'shared_control_learning'),
     'page': ('shared_control_ros', 'teach_page_node'),
 }
 """Packages whose dependencies an extra brings, and those of their own extra of that name; ``all`` brings those of all

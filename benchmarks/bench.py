@@ -17,7 +17,7 @@ from shared_control.command_line import script_parser
 from shared_control.files import write_atomically
 
 MEASUREMENTS = {'headless': 'headless', 'graph': 'graph', 'tick': 'tick', 'start': 'start', 'end': 'end',
-                'page': 'page', 'learning': 'training'}
+                'page': 'page', 'learning': 'training', 'install': 'install'}
 """By name, the module whose ``measure()`` gives the figures by subject."""
 MISSING = 'missing'
 """Key of a subject's figures: what of this machine's could not be measured, and what would be needed."""

@@ -50,20 +50,22 @@ def ping_pong(*options: str) -> dict[str, float]:
 
 def ticks(seconds: float = SECONDS) -> dict[str, float]:
     """p50 and p99 of the graph's tick, ms, as the simulator reports them after ``seconds``."""
-    with loop({name: ['-m', node_module(name)] for name in LOOP}) as domain:
-        return last_report(domain, seconds)
+    with loop({name: ['-m', node_module(name)] for name in LOOP}) as (domain, _):
+        values = last_report(domain, seconds)
+    return {'p50': float(values['tick_p50_ms']), 'p99': float(values['tick_p99_ms'])}
 
 
 @contextmanager
-def loop(python: dict[str, list[str]]) -> Iterator[int]:
-    """The nodes of the loop, on its core, each by what ``python`` is called with; gives the domain they are in."""
+def loop(python: dict[str, list[str]]) -> Iterator[tuple[int, int]]:
+    """The nodes of the loop, on its core, each by what ``python`` is called with; gives their domain, and the process
+    of the first, the simulator."""
     domain = next(DOMAINS)
     environment = {**node_environment(), 'ROS_DOMAIN_ID': str(domain)}
     nodes = [subprocess.Popen([sys.executable, *python[name], '--ros-args', '-p', *parameters], env=environment,
                               stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, preexec_fn=to_the_loops_core)
              for name, parameters in LOOP.items()]
     try:
-        yield domain
+        yield domain, nodes[0].pid
     finally:
         for node in nodes:
             node.send_signal(signal.SIGINT)
@@ -71,8 +73,8 @@ def loop(python: dict[str, list[str]]) -> Iterator[int]:
             node.wait()
 
 
-def last_report(domain: int, seconds: float) -> dict[str, float]:
-    """p50 and p99 of the ticks, ms, once the simulator has run for ``seconds``."""
+def last_report(domain: int, seconds: float, readers: int = 1) -> dict[str, Any]:
+    """What the simulator reports once it has run for ``seconds`` and so many read its joints."""
     context = Context()
     rclpy.init(context=context, domain_id=domain)
     node = Node('bench', context=context)
@@ -86,14 +88,15 @@ def last_report(domain: int, seconds: float) -> dict[str, float]:
 
     node.create_subscription(DiagnosticArray, contract.DIAGNOSTICS.name, on_report, contract.DIAGNOSTICS.qos)
     deadline = time.monotonic() + 60.0
-    while float(values.get('running_seconds', 0)) < seconds or int(values.get('ticks', 0)) < 1000:
+    while (float(values.get('running_seconds', 0)) < seconds or int(values.get('ticks', 0)) < 1000
+           or node.count_subscribers(contract.JOINT_STATES.name) < readers):
         if time.monotonic() > deadline:
             raise TimeoutError('the graph did not run within a minute')
         executor.spin_once(timeout_sec=0.2)
     executor.shutdown()
     node.destroy_node()
     context.try_shutdown()
-    return {'p50': float(values['tick_p50_ms']), 'p99': float(values['tick_p99_ms'])}
+    return values
 
 
 def measure() -> dict[str, Any]:

@@ -121,7 +121,7 @@ def measure() -> dict[str, Any]:
     import graph  # not in the nodes, whose environment leads to no other scripts
     with tempfile.TemporaryDirectory() as folder:
         files = {name: str(Path(folder) / f'{name}.npy') for name in NODES}
-        with graph.loop({name: [__file__, '--node', name, file] for name, file in files.items()}) as domain:
+        with graph.loop({name: [__file__, '--node', name, file] for name, file in files.items()}) as (domain, _):
             graph.last_report(domain, SECONDS)
         ticks, answers = (np.load(files[name])[SETTLING:] for name in NODES)
     return {**_figures(*_matched(ticks, answers)), 'in_process_us': in_process()}

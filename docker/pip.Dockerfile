@@ -3,7 +3,9 @@
 FROM python:3.11-slim
 WORKDIR /shared-control
 COPY requirements.txt ./
-RUN pip install --no-cache-dir --requirement requirements.txt
+COPY tools/slim_environment.py tools/
+RUN pip install --no-cache-dir --requirement requirements.txt \
+ && python tools/slim_environment.py
 COPY . ./
 RUN pip install --no-cache-dir --no-deps --no-build-isolation . \
  && useradd --create-home --uid 1000 trainer \

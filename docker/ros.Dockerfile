@@ -13,10 +13,12 @@ RUN apt-get update \
 
 WORKDIR /shared-control
 COPY requirements.txt ./
+COPY tools/slim_environment.py tools/
 # Everything that is pinned but ROS itself, which the image has.
 RUN python3 -m venv --system-site-packages /opt/venv \
  && grep --invert-match '^ros-' requirements.txt > /tmp/requirements.txt \
  && /opt/venv/bin/pip install --no-cache-dir --requirement /tmp/requirements.txt \
+ && /opt/venv/bin/python tools/slim_environment.py \
  && rm /tmp/requirements.txt
 
 COPY . ./

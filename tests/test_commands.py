@@ -87,6 +87,21 @@ def test_who_does_not_learn_loads_no_torch():
     assert {*modules} <= {*loaded} and 'torch' not in loaded
 
 
+def test_what_only_an_extra_brings_is_asked_for_when_it_is_used(tmp_path):
+    """Teaching, reports and tests of a policy do without; a command that needs it says what to install."""
+    without = 'import sys; sys.modules.update(dict.fromkeys(("pyarrow", "tensorboard", "nicegui"))); '
+    modules = ('shared_control_bringup.command', 'shared_control_bringup.session', 'ppo_agent_node.node',
+               'shared_control_learning.train_command', 'shared_control_records.evaluation.policies',
+               'shared_control_records.report_command', 'shared_control_records.study_report.report')
+    subprocess.run([sys.executable, '-c', f'{without}import {", ".join(modules)}'], check=True)
+    done = subprocess.run(
+        [sys.executable, '-c', f'{without}from shared_control.cli import main; sys.exit(main())', 'export', tmp_path],
+        check=False, capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr == (
+        "shared-control: the command needs the module 'pyarrow', which is not installed: "
+        'pip install "shared-control[export]"\n')
+
+
 @pytest.mark.parametrize(('arguments', 'said'), [
     ([], 'commands:'), (['--version'], f'shared-control {version("shared-control")}')])
 def test_the_command_alone_helps_and_says_its_version(arguments, said):

@@ -13,9 +13,9 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_sim', 'numpy', 'gymnasium', 'torch', 'stable-baselines3', 'safetensors',
-        'pydantic', 'scipy', 'tensorboard', 'tqdm',
+        'pydantic', 'scipy', 'tqdm',
     ],
-    extras_require={'test': ['pytest']},
+    extras_require={'test': ['pytest'], 'tensorboard': ['tensorboard']},
     zip_safe=False,
     maintainer='shared-control maintainers',
     maintainer_email='maintainers@shared-control.invalid',

@@ -24,6 +24,7 @@ import sys
 from importlib.metadata import EntryPoint, entry_points
 
 from .command_line import add_parser, make_parser
+from .extras import missing
 from .streams import lossy_output
 
 ORDER = ('session', 'replay', 'report', 'view', 'export', 'recover', 'train', 'evaluate', 'tutors', 'study', 'validate',
@@ -60,6 +61,9 @@ def _run() -> int:
         return args.run(args)
     except KeyboardInterrupt:
         return 130
+    except ModuleNotFoundError as error:
+        print(f'shared-control: {missing("the command", error)}', file=sys.stderr)
+        return 2
     except (ValueError, OSError) as error:
         print(f'shared-control: {error}', file=sys.stderr)
         return 2

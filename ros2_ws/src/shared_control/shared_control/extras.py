@@ -16,10 +16,10 @@
 
 _EXTRAS = {
     'gymnasium': 'sim', 'pybullet': 'sim', 'mujoco': 'mujoco', 'shared_control_sim': 'sim',
-    'torch': 'learn', 'stable_baselines3': 'learn', 'safetensors': 'learn', 'pydantic': 'learn', 'tensorboard': 'learn',
-    'tqdm': 'learn', 'shared_control_learning': 'learn',
+    'torch': 'learn', 'stable_baselines3': 'learn', 'safetensors': 'learn', 'pydantic': 'learn', 'tqdm': 'learn',
+    'shared_control_learning': 'learn', 'tensorboard': 'tensorboard',
     'pandas': 'study', 'matplotlib': 'study', 'scipy': 'study', 'mcap': 'study', 'rosbags': 'study',
-    'shared_control_records': 'study', 'rclpy': 'ros', 'nicegui': 'page',
+    'shared_control_records': 'study', 'pyarrow': 'export', 'rclpy': 'ros', 'nicegui': 'page',
 }
 
 

@@ -18,6 +18,7 @@ import argparse
 import os
 import sys
 from dataclasses import asdict
+from importlib.util import find_spec
 from pathlib import Path
 
 from shared_control.command_line import prose, write_json
@@ -56,8 +57,8 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
             result = train(
                 chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.episodes,
                 until_skilled=args.until_skilled, human_only=args.human_only, physics=args.physics, folder=args.output,
-                tensorboard=True, evaluate_every=args.evaluate_every, sharing=Sharing(args.sharing),
-                callbacks=_Bar(bar, args.output), processes=len(os.sched_getaffinity(0)))
+                tensorboard=find_spec('tensorboard') is not None, evaluate_every=args.evaluate_every,
+                sharing=Sharing(args.sharing), callbacks=_Bar(bar, args.output), processes=len(os.sched_getaffinity(0)))
     except KeyboardInterrupt:
         print(f'stopped; go on with: shared-control train --resume {args.output}', file=sys.stderr)
         return 130

@@ -22,7 +22,7 @@ from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.plate import Plate
 from shared_control_records.evaluation.lerobot_policy import LeRobotPolicy
 from shared_control_records.evaluation.policies import load_policies
-from shared_control_records.export.lerobot import action_rows
+from shared_control_records.export.frames import action_rows
 
 
 @pytest.fixture

@@ -26,7 +26,7 @@ import numpy as np
 from shared_control.processes import leave_with_the_parent
 from shared_control.tasks.task import Task
 
-from ..export.lerobot import action_rows
+from ..export.frames import action_rows
 
 SERVER = Path(__file__).with_name('lerobot_server.py')
 

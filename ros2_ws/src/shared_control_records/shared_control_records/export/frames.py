@@ -92,6 +92,15 @@ class EpisodeFrames:
         return self.verdict is Verdict.SUCCESS if self.verdict else self.succeeded
 
 
+def action_rows(task: Task) -> tuple[int, ...]:
+    """Rows of the wrench that actions of a data set have: both horizontal moments, and what else the task shares.
+
+    LeRobot takes a feature of one number for a scalar, which its policies cannot have for an action: so a task with
+    one axis has a second one that is zero.
+    """
+    return tuple(sorted({3, 4, *task.axes}))
+
+
 def episode_frames(bag: Bag) -> list[EpisodeFrames]:
     """The finished episodes of a bag, in their order, without those that a person has discarded.
 

@@ -37,22 +37,13 @@ from shared_control.robot.spec_file import panda
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
 
-from .frames import EpisodeFrames
+from .frames import EpisodeFrames, action_rows
 
 VERSION = 'v3.0'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
 EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome', 'verdict', 'devices')
 """What the list of episodes has of ours, beside what LeRobot asks for."""
-
-
-def action_rows(task: Task) -> tuple[int, ...]:
-    """Rows of the wrench that actions have: both horizontal moments, and what else the task shares.
-
-    LeRobot takes a feature of one number for a scalar, which its policies cannot have for an action: so a task with
-    one axis has a second one that is zero.
-    """
-    return tuple(sorted({3, 4, *task.axes}))
 
 
 def features(task: Task, with_parts: bool = True) -> dict[str, dict[str, Any]]:
