@@ -13,6 +13,7 @@ import os
 import shutil
 import sys
 import sysconfig
+from collections import defaultdict
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -36,15 +37,19 @@ def libraries() -> list[Path]:
 
 def link_equal_libraries() -> int:
     """Leave one file of those that are equal and in one folder; the bytes that the others took."""
-    known: dict[tuple[Path, bytes], Path] = {}
-    freed = 0
+    alike: dict[tuple[Path, int], list[Path]] = defaultdict(list)
     for path in libraries():
-        first = known.setdefault((path.parent, hashlib.sha256(path.read_bytes()).digest()), path)
-        if not path.samefile(first):
-            link = path.with_name(f'{path.name}.linked')
-            link.hardlink_to(first)
-            link.replace(path)
-            freed += first.stat().st_size
+        alike[path.parent, path.stat().st_size].append(path)
+    freed = 0
+    for paths in alike.values():
+        known: dict[bytes, Path] = {}
+        for path in paths if len(paths) > 1 else ():
+            first = known.setdefault(hashlib.sha256(path.read_bytes()).digest(), path)
+            if not path.samefile(first):
+                link = path.with_name(f'{path.name}.linked')
+                link.hardlink_to(first)
+                link.replace(path)
+                freed += first.stat().st_size
     return freed
 
 
