@@ -74,7 +74,7 @@ def loop(python: dict[str, list[str]]) -> Iterator[tuple[int, int]]:
 
 
 def last_report(domain: int, seconds: float, readers: int = 1) -> dict[str, Any]:
-    """What the simulator reports once it has run for ``seconds`` and so many read its joints."""
+    """What the simulator has just reported, once it has run for ``seconds`` and so many read its joints."""
     context = Context()
     rclpy.init(context=context, domain_id=domain)
     node = Node('bench', context=context)
@@ -88,8 +88,9 @@ def last_report(domain: int, seconds: float, readers: int = 1) -> dict[str, Any]
 
     node.create_subscription(DiagnosticArray, contract.DIAGNOSTICS.name, on_report, contract.DIAGNOSTICS.qos)
     deadline = time.monotonic() + 60.0
-    while (float(values.get('running_seconds', 0)) < seconds or int(values.get('ticks', 0)) < 1000
-           or node.count_subscribers(contract.JOINT_STATES.name) < readers):
+    while float(values.get('running_seconds', 0)) < seconds or int(values.get('ticks', 0)) < 1000:
+        if node.count_subscribers(contract.JOINT_STATES.name) < readers:
+            values.clear()
         if time.monotonic() > deadline:
             raise TimeoutError('the graph did not run within a minute')
         executor.spin_once(timeout_sec=0.2)

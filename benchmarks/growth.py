@@ -16,11 +16,13 @@ import math
 import os
 import shutil
 import statistics
+import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache, partial
 from multiprocessing import get_context
@@ -39,7 +41,17 @@ LITTLE_MB = 5.0
 SESSION_MINUTES = 5
 """Length of each session that is exported."""
 READING_SECONDS = 8.0
-
+READER = """
+import time
+import rclpy
+from shared_control_ros import contract
+from shared_control_ros.fast_loop import Polled
+rclpy.init()
+joints = Polled(rclpy.create_node('reader'), contract.JOINT_STATES, depth=1000, raw=True)
+while True:
+    joints.clear()
+    time.sleep(0.1)
+"""
 PARTICIPANTS = """
 participants: {{simulated: {{expert: {third}, high: {third}, low: {third}}}}}
 conditions: {{coached: {{episodes: 20}}, autonomous: {{episodes: 40, taught: false}}}}
@@ -108,19 +120,28 @@ def _peak_mb(process: int | str) -> float:
 
 
 def read_joints(readers: int, seconds: float) -> Cost:
-    """The simulator's CPU a tick while so many read ``/joint_states``, the controller among them; the tick, too."""
+    """The simulator's CPU a tick while so many read ``/joint_states``, the controller among them; the tick, too.
+
+    The others read as a recorder does, each a process, which the kernel places.
+    """
     import graph
-    from shared_control_testing.nodes import free_domain
+    from shared_control_ros.processes import node_environment, node_module
 
     def cpu_ms() -> float:
-        fields = Path(f'/proc/{simulator.pid}/stat').read_text().rpartition(')')[2].split()
+        fields = Path(f'/proc/{simulator}/stat').read_text().rpartition(')')[2].split()
         return 1e3 * (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
 
-    with free_domain() as domain, graph.running(domain, readers - 1) as simulator:
-        first, before, before_mb = graph.report(domain, 0.0, readers - 1), cpu_ms(), _peak_mb(simulator.pid)
-        last = graph.report(domain, float(first['running_seconds']) + seconds)
+    with ExitStack() as stack:
+        domain, simulator = stack.enter_context(graph.loop(
+            {name: ['-m', node_module(name)] for name in graph.LOOP}))
+        for _ in range(readers - 1):
+            other = stack.enter_context(subprocess.Popen(
+                [sys.executable, '-c', READER], env={**node_environment(), 'ROS_DOMAIN_ID': str(domain)}))
+            stack.callback(other.kill)
+        first, before, before_mb = graph.last_report(domain, 0.0, readers), cpu_ms(), _peak_mb(simulator)
+        last = graph.last_report(domain, float(first['running_seconds']) + seconds)
         ticks = int(last['ticks']) - int(first['ticks'])
-        return {'cpu': (cpu_ms() - before) / ticks, 'mb': _peak_mb(simulator.pid) - before_mb,
+        return {'cpu': (cpu_ms() - before) / ticks, 'mb': _peak_mb(simulator) - before_mb,
                 'tick_p50_ms': float(last['tick_p50_ms']), 'tick_p99_ms': float(last['tick_p99_ms'])}
 
 
