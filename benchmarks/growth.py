@@ -2,7 +2,7 @@
 
     python benchmarks/growth.py                     # what `make bench-growth` runs
     python benchmarks/growth.py --only participants
-    python benchmarks/growth.py --quick             # small sizes, once each: whether it runs, not how anything grows
+    python benchmarks/growth.py --quick             # one small size, once: whether it runs
 
 Each figure is from a process of its own: seconds of CPU (not of the clock, which others on the machine lengthen) after
 all that it needs is loaded, and the peak of its memory above what it had then; medians over the rounds, with least and
@@ -152,7 +152,7 @@ class Subject:
     what: str
     """As the axis of a figure has it."""
     sizes: tuple[int, ...]
-    quick: tuple[int, ...]
+    quick: int
     steps: dict[str, Callable[[int], Cost]]
     """What is measured, by name: its cost at a size."""
     unit: str = 's'
@@ -186,20 +186,20 @@ def subjects(work: Path, quick: bool) -> dict[str, Subject]:
 
     reading = partial(read_joints, seconds=1.0 if quick else READING_SECONDS)
     return {
-        'session': Subject('minutes of a session', (5, 11, 22, 45), (1, 2), {
+        'session': Subject('minutes of a session', (5, 11, 22, 45), 1, {
             'report': of(report_session, session), 'read and check': of(check_session, session)}),
-        'readers': Subject('readers of /joint_states, the controller included', (1, 2, 3, 5, 9), (1, 2),
+        'readers': Subject('readers of /joint_states, the controller included', (1, 2, 3, 5, 9), 2,
                            {'tick of the simulator': reading}, 'ms a tick'),
-        'participants': Subject('participants in a study of two conditions', (6, 12, 24, 48), (3, 6), {
+        'participants': Subject('participants in a study of two conditions', (6, 12, 24, 48), 3, {
             'report': of(report_study, study)}),
-        'sessions': Subject(f'sessions of {minutes} minutes in an export', (1, 2, 4, 8), (1, 2), {
+        'sessions': Subject(f'sessions of {minutes} minutes in an export', (1, 2, 4, 8), 2, {
             kind: of(partial(export, kind), sessions) for kind in ('parquet', 'lerobot')})}
 
 
 def exponent(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """The slope of the logarithms over the three largest sizes; None where a value is not above zero."""
+    """The slope of the logarithms over the three largest sizes; None of one size, or of a value that is not above zero."""
     sizes, values = sizes[-3:], values[-3:]
-    if min(values) <= 0:
+    if len(sizes) < 2 or min(values) <= 0:
         return None
     return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])
 
@@ -260,7 +260,7 @@ def main() -> int:
     names = ('session', 'readers', 'participants', 'sessions')
     parser = script_parser(__doc__)
     parser.add_argument('--only', choices=names, help='one subject (default: all)')
-    parser.add_argument('--quick', action='store_true', help='two small sizes, once each')
+    parser.add_argument('--quick', action='store_true', help='one small size, once')
     parser.add_argument('--output', type=Path, default=Path('out/growth'), metavar='FOLDER',
                         help='folder for figures and numbers')
     args = parser.parse_args()
@@ -271,7 +271,7 @@ def main() -> int:
         for name, subject in subjects(Path(work), args.quick).items():
             if args.only not in (None, name):
                 continue
-            sizes = subject.quick if args.quick else subject.sizes
+            sizes = (subject.quick,) if args.quick else subject.sizes
             results[name] = steps = dict(measured(subject, sizes, 1 if args.quick else ROUNDS))
             draw(args.output / name, subject, steps)
             print(table(subject.what, steps), end='\n\n', flush=True)
