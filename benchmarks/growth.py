@@ -197,7 +197,7 @@ def subjects(work: Path, quick: bool) -> dict[str, Subject]:
 
 
 def exponent(sizes: Sequence[float], values: Sequence[float]) -> float | None:
-    """The slope of the logarithms over the three largest sizes; None of one size, or of a value that is not above zero."""
+    """The slope of the logarithms over the three largest sizes; None of one size, or where a value is not positive."""
     sizes, values = sizes[-3:], values[-3:]
     if len(sizes) < 2 or min(values) <= 0:
         return None
