@@ -5,8 +5,8 @@
     python benchmarks/growth.py --quick             # one small size, once: whether it runs
 
 Each figure is from a process of its own: seconds of CPU (not of the clock, which others on the machine lengthen) after
-all that it needs is loaded, and the peak of its memory above what it had then; medians over the rounds, with least and
-most. With readers of the joints it is the simulator's CPU a tick. The exponent of growth is the slope of the
+all that it needs is loaded, and how far the peak of its memory rose from then on; medians over the rounds, with least
+and most. With readers of the joints it is the simulator's CPU a tick. The exponent of growth is the slope of the
 logarithms over the three largest sizes: 1 is linear. Writes OUTPUT/growth.json and a figure for each subject; the exit
 code is 1 when something grows worse than linear.
 """
@@ -57,9 +57,8 @@ participants: {{simulated: {{expert: {third}, high: {third}, low: {third}}}}}
 conditions: {{coached: {{episodes: 20}}, autonomous: {{episodes: 40, taught: false}}}}
 """
 
-
 Cost = dict[str, float]
-"""What one process took: ``cpu``, and ``mb``, the peak above what it had before; what else is worth knowing."""
+"""What one process took: ``cpu``, and ``mb``, by which its peak rose; what else is worth knowing."""
 Work = Callable[[], Any]
 """What is measured, with all that it needs loaded."""
 
