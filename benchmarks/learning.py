@@ -10,6 +10,7 @@ the command is given again.
     python benchmarks/learning.py --conditions coached-expert --seeds 8
     python benchmarks/learning.py --conditions coached-expert --retention      # 20 further episodes without the tutor
     python benchmarks/learning.py --conditions coached-expert-10 autonomous-10 # ten episodes each, skilled or not
+    python benchmarks/learning.py --conditions autonomous guided-blind --episodes 10 --against autonomous
 """
 
 import json
@@ -23,6 +24,7 @@ import numpy as np
 from scipy.stats import bootstrap
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
+from shared_control.files import write_atomically
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.callbacks import Callbacks
@@ -163,6 +165,32 @@ def describe(name: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
     return row
 
 
+def share_skilled_against(runs: list[dict[str, Any]], others: list[dict[str, Any]], episodes: int) -> list[float]:
+    """How much larger the share of runs is that were skilled within ``episodes`` than that of ``others`` with the same
+    seeds, and its 95 % bootstrap interval."""
+    own, other = ({run['seed']: float(run['skilled'] is not None and run['skilled'] <= episodes) for run in some}
+                  for some in (runs, others))
+    paired = np.array([own[seed] - other[seed] for seed in sorted(own.keys() & other.keys())])
+    if len(set(paired)) < 2:
+        return [float(paired.mean())] * 3
+    interval = bootstrap((paired,), np.mean, method='percentile', rng=0).confidence_interval
+    return [float(paired.mean()), *map(float, interval)]
+
+
+def compare(rows: list[dict[str, Any]], reference: str) -> None:
+    """Add to each row, and print, how its condition fares against ``reference`` at the same number of episodes."""
+    others = next(row['runs'] for row in rows if row['condition'] == reference)
+    for row in rows:
+        if row['condition'] == reference or 'censored' not in row:
+            continue
+        episodes = min(CONDITIONS[name].episodes for name in (row['condition'], reference))
+        row['skilled_against'] = {'reference': reference, 'episodes': episodes,
+                                  'difference': share_skilled_against(row['runs'], others, episodes)}
+        difference, low, high = row['skilled_against']['difference']
+        print(f'{row["condition"]}: share skilled within {episodes} episodes, less that of {reference}, paired: '
+              f'{difference:+.2f} [{low:+.2f}, {high:+.2f}]')
+
+
 def tell(row: dict[str, Any]) -> None:
     """Print a condition."""
     def interval(key: str) -> str:
@@ -193,12 +221,16 @@ def main() -> None:
     parser.add_argument('--episodes', type=int, metavar='N',
                         help='at most so many (default: as many as the condition has)')
     parser.add_argument('--retention', action='store_true', help='20 further episodes without the tutor')
+    parser.add_argument('--against', choices=tuple(CONDITIONS), metavar='NAME',
+                        help='compare all others with this one of the conditions (default: no comparison)')
     parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
                         help='processes (default: one a core)')
     parser.add_argument('--output', type=Path, default=Path('out/learning'), metavar='FOLDER',
                         help='folder of the runs')
     args = parser.parse_args()
-    rows = []
+    if args.against is not None and args.against not in args.conditions:
+        parser.error(f'--against {args.against}: it is not among the --conditions')
+    rows: list[dict[str, Any]] = []
     with ProcessPoolExecutor(args.workers) as pool:
         for name in args.conditions:
             futures = [pool.submit(run, name, seed, args.output / name / f'{seed:03}', args.episodes, args.retention)
@@ -206,8 +238,16 @@ def main() -> None:
             runs = [future.result() for future in tqdm(futures, desc=name, unit='run', disable=None)]
             rows.append({**describe(name, runs), 'runs': runs})
             tell(rows[-1])
-            table = {'tutors': 'simulated', 'conditions': rows}
-            (args.output / 'learning.json').write_text(json.dumps(table, indent=2) + '\n')
+            write(rows, args.output)
+    if args.against is not None:
+        compare(rows, args.against)
+        write(rows, args.output)
+
+
+def write(rows: list[dict[str, Any]], folder: Path) -> None:
+    """The table so far."""
+    table = {'tutors': 'simulated', 'conditions': rows}
+    write_atomically(folder / 'learning.json', (json.dumps(table, indent=2) + '\n').encode())
 
 
 if __name__ == '__main__':
