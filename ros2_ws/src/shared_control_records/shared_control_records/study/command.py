@@ -101,6 +101,8 @@ def run(args: argparse.Namespace) -> int:
         from ..study_report.measures import load_study
         rows = cell_rows(load_study(folder))
         print(as_text(rows), file=prints)
+        if args.quick:
+            print('The quick form tests once, so nobody can be skilled, which takes two tests in a row.', file=prints)
         write_json({'tutors': 'simulated', 'seed': plan.seed, 'cells': rows}, args.json)
     print(f'The report:\n  shared-control report {folder.path}', file=prints)
     return 0

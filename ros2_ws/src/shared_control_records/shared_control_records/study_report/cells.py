@@ -139,7 +139,7 @@ def _named(name: str, estimate: Estimate) -> Row:
 
 
 _COLUMNS = (
-    ('learner', 18), ('tutor', 12), ('skilled', 9), ('episodes', 14), ('robot s', 8), ('human s', 8), ('presses', 8),
+    ('learner', 18), ('tutor', 12), ('skilled', 9), ('  episodes', 14), ('robot s', 8), ('human s', 8), ('presses', 8),
     ('interv.', 8), ('noise', 6), ('success', 8), ('error mm', 9))
 
 
