@@ -123,7 +123,7 @@ def _lesson(scene: Scene) -> Words:
     title, text = words_for(scene.task).get(scene.phase, Words(scene.phase, ''))
     if scene.phase in ('learn', 'wait', 'done'):
         outcome = '' if scene.outcome is None or scene.feedback == 'none' else scene.outcome.words
-        soon = '' if scene.next_in is None else f'Next in {math.ceil(scene.next_in)}.'
+        soon = '' if scene.next_in is None or scene.next_in <= 0.0 else f'Next in {math.ceil(scene.next_in)}.'
         text = ' '.join(filter(None, (outcome, soon))) or text
     elif scene.phase == 'practice':
         text = practice_words(scene.rests_left)

@@ -96,6 +96,7 @@ def test_bars_keep_to_their_place_beyond_the_scale():
     ({'phase': 'learn'}, '[ THE ROBOT LEARNS ]  Your keys do not count now.'),
     ({'phase': 'learn'}, ' your keys do not count now '),
     ({'phase': 'learn', 'outcome': FELL, 'next_in': 1.2}, 'The ball fell after 8 s. Next in 2.'),
+    ({'phase': 'learn', 'outcome': FELL, 'next_in': 0.0}, 'The ball fell after 8 s.  '),
     ({'phase': 'test'}, '[ THE ROBOT ALONE ]  Hands off'),
     ({'phase': 'practice'}, '[ PRACTICE ]  You alone move the tray'),
     ({'phase': 'practice'}, 'Enter start teaching'),
