@@ -260,7 +260,7 @@ def _help(scene: Scene, width: int, unicode: bool) -> str:
     left, right = _ARROWS[unicode]
     keys = ('← ↑ ↓ → or a w s d' if unicode else 'arrows or a w s d') if scene.from_above else f'{left} {right} or a d'
     short = keys.partition(' or ')[0]
-    end = 'q: done teaching'
+    end = 'q: go on teaching' if scene.ending else 'q: done teaching'
     if scene.phase == 'practice':
         end = 'Enter: not yet' if scene.rests_left else 'Enter: start teaching'
     word = end.replace(': ', ' ')

@@ -101,6 +101,7 @@ def test_bars_keep_to_their_place_beyond_the_scale():
     ({'phase': 'practice'}, '[ PRACTICE ]  You alone move the tray'),
     ({'phase': 'practice'}, 'Enter start teaching'),
     ({'ending': True}, 'The teaching ends with this episode. q: go on teaching.'),
+    ({'ending': True}, 'space no push  q go on teaching  p'),
     ({'phase': 'wait'}, '[ GET READY ]'),
     ({'phase': 'done'}, '[ FINISHED ]'),
     ({'phase': 'dance'}, '[ DANCE ]'),
