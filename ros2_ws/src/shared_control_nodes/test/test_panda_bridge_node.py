@@ -20,6 +20,7 @@ library (stand_in/) takes its place. Where the real one is installed, its calls 
 
 import importlib.util
 import signal
+import time
 from pathlib import Path
 
 import numpy as np
@@ -88,16 +89,19 @@ def commands(states, observer):
     return commands
 
 
+def enable(observer, data=True, beside=lambda: None):
+    return observer.call(SetBool, 'robot/enable', SetBool.Request(data=data), beside=beside)
+
+
+def enable_beside(observer, commands, torque):
+    """Enable while torques come; refused until the first has found its way."""
+    deadline = time.monotonic() + 60.0
+    while not (response := enable(observer, beside=lambda: commands.publish(Float64MultiArray(data=torque)))).success:
+        assert 'no torques' in response.message and time.monotonic() < deadline, response.message
+
+
 class TestWiring:
     """The bridge on the stand-in."""
-
-    def enable(self, observer, data=True, beside=lambda: None):
-        return observer.call(SetBool, 'robot/enable', SetBool.Request(data=data), beside=beside)
-
-    def enable_beside(self, observer, commands, torque):
-        """Enable while torques come."""
-        response = self.enable(observer, beside=lambda: commands.publish(Float64MultiArray(data=torque)))
-        assert response.success, response.message
 
     def send(self, observer, commands, torque, until):
         """Torques again and again."""
@@ -112,27 +116,27 @@ class TestWiring:
         assert (stamps % 1_000_000 == 0).all() and (np.diff(stamps) > 0).all()
 
     def test_nothing_moves_before_a_person_enables_it(self, observer, states, commands):
-        refused = self.enable(observer)
+        refused = enable(observer)
         assert not refused.success and 'enable the controller first' in refused.message
         count = len(states)
         self.send(observer, commands, [0.0] * 6 + [0.5], lambda: len(states) > count + 100)
         assert not any(states[-1].effort)
 
     def test_enabled_it_applies_torques_until_they_fall_silent(self, observer, states, commands):
-        self.enable_beside(observer, commands, [0.0] * 6 + [0.001])
+        enable_beside(observer, commands, [0.0] * 6 + [0.001])
         self.send(observer, commands, [0.0] * 6 + [0.001], lambda: states[-1].effort[6] == 0.001)
         observer.spin(lambda: not any(states[-1].effort), what='silence ends the control')
 
     def test_a_reflex_ends_the_control_until_recovery(self, observer, states, commands):
         reports = observer.listen(contract.DIAGNOSTICS)
-        self.enable_beside(observer, commands, [0.0] * 7)
+        enable_beside(observer, commands, [0.0] * 7)
         self.send(observer, commands, [0.0] * 6 + [50.0],
                   lambda: any('aborted by reflex' in r.status[0].message for r in reports))
-        refused = self.enable(observer)
+        refused = enable(observer)
         assert not refused.success and 'kReflex' in refused.message
         assert observer.call(Trigger, 'robot/error_recovery', Trigger.Request()).success
-        self.enable_beside(observer, commands, [0.0] * 7)
-        assert self.enable(observer, False).success
+        enable_beside(observer, commands, [0.0] * 7)
+        assert enable(observer, False).success
 
 
 @pytest.mark.usefixtures('with_stand_in')
@@ -141,8 +145,7 @@ def test_a_loop_that_stands_still_while_the_arm_is_under_control_ends_it(start_n
     node = start_node('panda_bridge_node', hostname='here', command_timeout=1.0)
     observer.spin(lambda: states)
     commands = observer.publisher(contract.EFFORT_COMMANDS)
-    assert observer.call(SetBool, 'robot/enable', SetBool.Request(data=True), beside=lambda: commands.publish(
-        Float64MultiArray(data=[0.0] * 7))).success
+    enable_beside(observer, commands, [0.0] * 7)
     observer.spin_for(0.3)  # its loop has come round since, and commands are not missed yet
     node.process.send_signal(signal.SIGSTOP)
     observer.spin_for(3.0)  # twice command_timeout, and more
