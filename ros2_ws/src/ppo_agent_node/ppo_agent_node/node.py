@@ -354,20 +354,24 @@ class PpoAgentNode(Callbacks):
 
     def interrupted(self, error: PlantInterrupted) -> None:
         """See :class:`Callbacks`."""
-        self._void += not self._repeat
         self.node.get_logger().warning(f'the episode is void: {error}')
-        if self._void and self._void % VOID_IN_A_ROW == 0:
-            cores, load = len(os.sched_getaffinity(0)), os.getloadavg()[0]
-            self.node.get_logger().error(
-                f'{self._void} episodes in a row were void, and none will count like this: end other programs (load '
-                f'{load:.1f} on {cores} cores) and look with `shared-control doctor`, or end the session and go on '
-                'with it later')
+        if not self._repeat:
+            self._void_again()
         self._break_off(str(error))
         again = time.monotonic() + TRY_AGAIN_SECONDS  # whatever is the matter may last
         while time.monotonic() < again:
             time.sleep(0.1)
             self._attend()
         self._wait()
+
+    def _void_again(self) -> None:
+        self._void += 1
+        if self._void % VOID_IN_A_ROW == 0:
+            cores, load = len(os.sched_getaffinity(0)), os.getloadavg()[0]
+            self.node.get_logger().error(
+                f'{self._void} episodes in a row were void, and none will count like this: end other programs (load '
+                f'{load:.1f} on {cores} cores) and look with `shared-control doctor`, or end the session and go on '
+                'with it later')
 
     def _break_off(self, reason: str) -> None:
         """What is under way is not learned from, but a person has taught for as long."""
