@@ -13,16 +13,14 @@ from shared_control_testing.long_sessions import write_long_session
 MINUTES = 45
 ROUNDS = 3
 REPORT = """
-import json, re, sys, time
-from pathlib import Path
+import json, sys, time
 from shared_control_records.session.folder import SessionFolder
 from shared_control_records.session.report import write_report
+from shared_control_testing.usage import memory_bytes
 started = time.perf_counter()
 write_report(SessionFolder.open(sys.argv[1]))
 seconds = time.perf_counter() - started
-# Not ru_maxrss, in which a process begins with what the one that started it had.
-peak_kb = int(re.search(r'VmHWM:\\s+(\\d+)', Path('/proc/self/status').read_text())[1])
-print(json.dumps([seconds, peak_kb * 1024 / 1e6]))
+print(json.dumps([seconds, memory_bytes(peak=True) / 1e6]))
 """
 
 

@@ -50,15 +50,19 @@ def ping_pong(*options: str) -> dict[str, float]:
 
 def ticks(seconds: float = SECONDS) -> dict[str, float]:
     """p50 and p99 of the graph's tick, ms, as the simulator reports them after ``seconds``."""
-    with loop({name: ['-m', node_module(name)] for name in LOOP}) as (domain, _):
+    with loop() as (domain, _):
         values = last_report(domain, seconds)
     return {'p50': float(values['tick_p50_ms']), 'p99': float(values['tick_p99_ms'])}
 
 
 @contextmanager
-def loop(python: dict[str, list[str]]) -> Iterator[tuple[int, int]]:
-    """The nodes of the loop, on its core, each by what ``python`` is called with; gives their domain, and the process
-    of the first, the simulator."""
+def loop(python: dict[str, list[str]] | None = None) -> Iterator[tuple[int, int]]:
+    """The nodes of the loop, on its core; gives their domain, and the process of the first, the simulator.
+
+    Args:
+        python: what Python is called with for each; as they are installed when not given.
+    """
+    python = python or {name: ['-m', node_module(name)] for name in LOOP}
     domain = next(DOMAINS)
     environment = {**node_environment(), 'ROS_DOMAIN_ID': str(domain)}
     nodes = [subprocess.Popen([sys.executable, *python[name], '--ros-args', '-p', *parameters], env=environment,

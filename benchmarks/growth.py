@@ -13,7 +13,6 @@ code is 1 when something grows worse than linear.
 
 import json
 import math
-import os
 import shutil
 import statistics
 import subprocess
@@ -32,6 +31,7 @@ from typing import Any
 import numpy as np
 from shared_control.command_line import script_parser
 from shared_control.files import write_atomically
+from shared_control_testing.usage import cpu_seconds, memory_bytes
 
 ROUNDS = 3
 LINEAR = 1.2
@@ -101,9 +101,9 @@ def cost(prepare: Callable[[Path, Path], Work], data: Path) -> Cost:
     """What it takes; for a process of its own."""
     with tempfile.TemporaryDirectory() as folder:
         work = prepare(data, Path(folder) / 'output')
-        before_mb, before = _peak_mb('self'), time.process_time()
+        before_mb, before = _peak_mb(), time.process_time()
         work()
-        return {'cpu': time.process_time() - before, 'mb': _peak_mb('self') - before_mb}
+        return {'cpu': time.process_time() - before, 'mb': _peak_mb() - before_mb}
 
 
 def in_a_process(prepare: Callable[[Path, Path], Work], data: Path) -> Cost:
@@ -112,10 +112,8 @@ def in_a_process(prepare: Callable[[Path, Path], Work], data: Path) -> Cost:
         return pool.submit(cost, prepare, data).result()
 
 
-def _peak_mb(process: int | str) -> float:
-    """Not ru_maxrss, in which a child begins with what its parent had."""
-    lines = Path(f'/proc/{process}/status').read_text().splitlines()
-    return int(next(line.split()[1] for line in lines if line.startswith('VmHWM'))) * 1024 / 1e6
+def _peak_mb(process: int | str = 'self') -> float:
+    return memory_bytes(process, peak=True) / 1e6
 
 
 def read_joints(readers: int, seconds: float) -> Cost:
@@ -124,23 +122,17 @@ def read_joints(readers: int, seconds: float) -> Cost:
     The others read as a recorder does, each a process, which the kernel places.
     """
     import graph
-    from shared_control_ros.processes import node_environment, node_module
-
-    def cpu_ms() -> float:
-        fields = Path(f'/proc/{simulator}/stat').read_text().rpartition(')')[2].split()
-        return 1e3 * (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
-
+    from shared_control_ros.processes import node_environment
     with ExitStack() as stack:
-        domain, simulator = stack.enter_context(graph.loop(
-            {name: ['-m', node_module(name)] for name in graph.LOOP}))
+        domain, simulator = stack.enter_context(graph.loop())
         for _ in range(readers - 1):
             other = stack.enter_context(subprocess.Popen(
                 [sys.executable, '-c', READER], env={**node_environment(), 'ROS_DOMAIN_ID': str(domain)}))
             stack.callback(other.kill)
-        first, before, before_mb = graph.last_report(domain, 0.0, readers), cpu_ms(), _peak_mb(simulator)
+        first, before, before_mb = graph.last_report(domain, 0.0, readers), cpu_seconds(simulator), _peak_mb(simulator)
         last = graph.last_report(domain, float(first['running_seconds']) + seconds)
         ticks = int(last['ticks']) - int(first['ticks'])
-        return {'cpu': (cpu_ms() - before) / ticks, 'mb': _peak_mb(simulator) - before_mb,
+        return {'cpu': 1e3 * (cpu_seconds(simulator) - before) / ticks, 'mb': _peak_mb(simulator) - before_mb,
                 'tick_p50_ms': float(last['tick_p50_ms']), 'tick_p99_ms': float(last['tick_p99_ms'])}
 
 

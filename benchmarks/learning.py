@@ -15,6 +15,7 @@ the command is given again.
 
 import json
 import os
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -135,14 +136,18 @@ def retained(policy: Path, seed: int) -> list[bool]:
     return watch.passed
 
 
+def with_interval(values: np.ndarray, statistic: Callable[..., Any]) -> list[float]:
+    """A statistic and its 95 % bootstrap interval."""
+    middle = low = high = statistic(values)
+    if len(set(values)) > 1:
+        low, high = bootstrap((values,), statistic, method='percentile', rng=0).confidence_interval
+    return [float(middle), float(low), float(high)]
+
+
 def median_with_interval(values: list[float]) -> list[float]:
     """Median and its 95 % bootstrap interval; runs that never got there count as infinite."""
     finite = np.where(np.isinf(values), 1e9, values)
-    if len(set(finite)) < 2:
-        low = high = finite[0]
-    else:
-        low, high = bootstrap((finite,), np.median, method='percentile', rng=0).confidence_interval
-    return [float('inf') if v >= 1e8 else float(v) for v in (np.median(finite), low, high)]
+    return [float('inf') if v >= 1e8 else v for v in with_interval(finite, np.median)]
 
 
 def describe(name: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
@@ -171,10 +176,7 @@ def share_skilled_against(runs: list[dict[str, Any]], others: list[dict[str, Any
     own, other = ({run['seed']: float(run['skilled'] is not None and run['skilled'] <= episodes) for run in some}
                   for some in (runs, others))
     paired = np.array([own[seed] - other[seed] for seed in sorted(own.keys() & other.keys())])
-    if len(set(paired)) < 2:
-        return [float(paired.mean())] * 3
-    interval = bootstrap((paired,), np.mean, method='percentile', rng=0).confidence_interval
-    return [float(paired.mean()), *map(float, interval)]
+    return with_interval(paired, np.mean)
 
 
 def compare(rows: list[dict[str, Any]], reference: str) -> None:

@@ -8,7 +8,6 @@ slope is a failure (exit code 1).
 """
 
 import json
-import os
 import sys
 import tempfile
 import time
@@ -22,6 +21,7 @@ from shared_control_ros import contract
 from shared_control_testing.faults.plan import NODES
 from shared_control_testing.live_session import Session
 from shared_control_testing.nodes import Observer, free_domain
+from shared_control_testing.usage import cpu_seconds, memory_bytes
 from tqdm import tqdm
 
 ALLOWED = {'memory_mb': 0.2, 'descriptors': 0.02, 'threads': 0.02, 'shared_memory_mb': 0.05, 'tick_p50_ms': 0.002}
@@ -57,14 +57,12 @@ class Processes:
 
     def sample(self, minute: float, name: str, process: int) -> Sample:
         """A process by its id."""
-        status = dict(line.split(':', 1) for line in Path(f'/proc/{process}/status').read_text().splitlines())
+        descriptors, threads = (len(list(Path(f'/proc/{process}/{kind}').iterdir())) for kind in ('fd', 'task'))
         return Sample(minute, name, cpu_percent=self._cpu_percent(process),
-                      memory_mb=int(status['VmRSS'].split()[0]) / 1024,
-                      descriptors=len(list(Path(f'/proc/{process}/fd').iterdir())), threads=int(status['Threads']))
+                      memory_mb=memory_bytes(process) / 2**20, descriptors=descriptors, threads=threads)
 
     def _cpu_percent(self, process: int) -> float:
-        fields = Path(f'/proc/{process}/stat').read_text().rpartition(')')[2].split()
-        now, used = time.monotonic(), (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+        now, used = time.monotonic(), cpu_seconds(process)
         before, used_before = self._cpu.get(process, (now, used))
         self._cpu[process] = now, used
         return 100.0 * (used - used_before) / (now - before) if now > before else 0.0

@@ -129,9 +129,9 @@ def measure() -> dict[str, Any]:
 
 def in_process() -> dict[str, float]:
     """Medians of controller and physics of a tick, us, by what the process did before."""
+    from headless import LEVEL
     from shared_control_sim.local_plant import LocalPlant
     plant = LocalPlant()
-    level = np.array([-2.1])
     found = {}
     for sleep in SLEEPS:
         plant.reset(seed=0)
@@ -140,7 +140,7 @@ def in_process() -> dict[str, float]:
             if sleep:
                 time.sleep(sleep)
             started = time.perf_counter()
-            plant.tick(level)
+            plant.tick(LEVEL)
             times.append(time.perf_counter() - started)
         name = f'after {1e3 * sleep:g} ms of sleep' if sleep else 'one after the other'
         found[name] = round(statistics.median(times) * 1e6, 1)

@@ -1,6 +1,8 @@
 """Fixtures of this folder: whole sessions in processes of their own, in a terminal or without one."""
 
+import importlib.util
 import json
+import sys
 import time
 from pathlib import Path
 
@@ -10,6 +12,25 @@ from shared_control_learning.episode_table import read_rows
 from shared_control_testing.live_session import Session
 from shared_control_testing.nodes import *  # noqa: F403
 from shared_control_testing.terminal import Terminal
+
+BENCHMARKS = Path(__file__).parents[1] / 'benchmarks'
+
+
+@pytest.fixture(scope='module')
+def load_benchmark():
+    """``load_benchmark(name)``: that script of benchmarks/ as a module."""
+    loaded = []
+
+    def load(name: str):
+        spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f'{name}.py')
+        module = sys.modules[name] = importlib.util.module_from_spec(spec)
+        loaded.append(name)
+        spec.loader.exec_module(module)
+        return module
+
+    yield load
+    for name in loaded:
+        del sys.modules[name]
 
 
 class TerminalSession(Session, Terminal):

@@ -1,6 +1,5 @@
 """How growth is judged, and a short form of the measurement."""
 
-import importlib.util
 import json
 import subprocess
 import sys
@@ -14,12 +13,8 @@ SUBJECTS = {'session': {'report', 'read and check'}, 'readers': {'tick of the si
 
 
 @pytest.fixture(scope='module')
-def growth():
-    spec = importlib.util.spec_from_file_location('growth', SCRIPT)
-    module = sys.modules['growth'] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules['growth']
+def growth(load_benchmark):
+    return load_benchmark('growth')
 
 
 def of_power(growth, power, constant):

@@ -1,21 +1,11 @@
 """The learning benchmark: how conditions are compared."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import pytest
-
-SCRIPT = Path(__file__).parents[1] / 'benchmarks' / 'learning.py'
 
 
 @pytest.fixture(scope='module')
-def learning():
-    spec = importlib.util.spec_from_file_location('learning', SCRIPT)
-    module = sys.modules['learning'] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules['learning']
+def learning(load_benchmark):
+    return load_benchmark('learning')
 
 
 def runs(*skilled):

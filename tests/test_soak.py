@@ -1,6 +1,5 @@
 """The soak: what it calls growth, and a short one for real."""
 
-import importlib.util
 import json
 import subprocess
 import sys
@@ -13,12 +12,8 @@ SCRIPT = Path(__file__).parents[1] / 'benchmarks' / 'soak.py'
 
 
 @pytest.fixture(scope='module')
-def soak():
-    spec = importlib.util.spec_from_file_location('soak', SCRIPT)
-    module = sys.modules['soak'] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    yield module
-    del sys.modules['soak']
+def soak(load_benchmark):
+    return load_benchmark('soak')
 
 
 @pytest.mark.parametrize(('slope', 'step', 'grows'), [(0.5, 0.0, True), (0.1, 0.0, False), (0.0, 20.0, False)])
