@@ -11,6 +11,7 @@ import yaml
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from mcap.reader import make_reader
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from shared_control.keys import HUMAN_MOMENT_LIMIT, Key, KeyPresses
@@ -362,6 +363,20 @@ def bag(scratch):
     file, = folder.glob('*.mcap')
     content = file.read_bytes()
     return lambda: (file, content)  # a function, since Hypothesis prints the values of fixtures
+
+
+@QUICK
+@given(st.lists(st.tuples(st.integers(-2**63, 2**64), st.integers(-10**9, 10**9), st.integers(0, 2**64)), min_size=1))
+def test_times_and_counts_that_garbled_packets_name(scratch, messages):
+    writer = BagWriter(scratch / 'times')
+    channel = writer.add_topic('/clock', 'rosgraph_msgs/msg/Clock', '', '', '[]')
+    for sent, received, sequence in messages:
+        writer.write(channel, b'', sent, received, sequence)
+    writer.finish()
+    with writer.path.open('rb') as file:
+        read = sorted(message.publish_time for _, _, message in make_reader(file).iter_messages())
+    writer.path.unlink()
+    assert read == sorted(sent if 0 <= sent < 2**63 else max(received, 0) for sent, received, _ in messages)
 
 
 @SLOW

@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 from shared_control import BALANCE, Key, KeyMap, PlantState, RobotModel, Scene, Task, settled
-from shared_control.robot.model import manipulability
 from shared_control.tasks.task import OBSERVATION_BOUND
 
 
@@ -75,7 +74,7 @@ class TwoAxis(Task):
         return TwoAxisState(
             error=(float(position[0]) - ball_x, float(position[1]) - ball_y),
             ball_velocity=(v_x, v_y), lean=(float(rotation[0, 2]), float(rotation[1, 2])),
-            ball_height=ball_z, manipulability=manipulability(model.jacobian(state.q)))
+            ball_height=ball_z, manipulability=model.manipulability(state.q))
 
     def observe(self, state: TwoAxisState) -> np.ndarray:
         """See Task: errors, velocities and lean, scaled."""

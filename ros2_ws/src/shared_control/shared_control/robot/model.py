@@ -79,6 +79,10 @@ class RobotModel:
         return pin.computeFrameJacobian(
             self.pin_model, self._data, q, self._tool_id, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED)
 
+    def manipulability(self, q: np.ndarray) -> float:
+        """:func:`manipulability` of the Jacobian."""
+        return manipulability(self.jacobian(q))
+
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
         """M(q), (n, n), kg m^2 (15)."""
         upper = np.triu(pin.crba(self.pin_model, self._data, q))

@@ -120,10 +120,9 @@ def _thinned(stamps_ns: np.ndarray) -> np.ndarray:
 class _Pose(RobotModel):
     """The model that tracks are taken from: poses alone, each once.
 
-    A task describes the Jacobian's manipulability with every state, which tracks have no use for.
+    A task describes the manipulability with every state, which tracks have no use for.
     """
 
-    _NO_JACOBIAN = np.zeros((1, 1))
     _last: tuple[np.ndarray | None, Any] = (None, None)
 
     def tray_pose(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -132,9 +131,9 @@ class _Pose(RobotModel):
             self._last = q, super().tray_pose(q)
         return self._last[1]
 
-    def jacobian(self, q: np.ndarray) -> np.ndarray:
+    def manipulability(self, q: np.ndarray) -> float:
         """See :class:`RobotModel`; not computed."""
-        return self._NO_JACOBIAN
+        return np.nan
 
 
 def _seen(bag: Bag, samples: np.ndarray, model: RobotModel) -> tuple[np.ndarray, np.ndarray, bool]:

@@ -49,6 +49,8 @@ from .ticks import JointStateRows, digests, to_ns
 _WRENCHES = (
     contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
     contract.AGENT_APPLIED)
+_AFTER_STAMP = 12
+"""Where the rest of a message begins that begins with a stamp, bytes."""
 _SMALLEST_WRENCH = 64
 _SMALLEST_ODOMETRY = 12 + 8 * (7 + 36 + 6 + 36)
 
@@ -197,11 +199,14 @@ class _Collector:
                for name, rows in self._wrench_rows.items()}}
         self._ball = Columns()
         self._rows: dict[str, list[tuple[int, Any]]] = {topic.full_name: [] for topic in contract.TRAINING}
+        # They raise ValueError for what cannot be used.
         self._one_by_one: dict[str, Callable[[int, Any], None]] = {
             **{topic: partial(self._add_value, topic) for topic in self._rows},
             contract.KEYS.full_name: self._add_keys, contract.VERDICT.full_name: self._add_judgement,
             contract.DIAGNOSTICS.full_name: self._add_statuses}
         self._keys: dict[str, KeyPresses] = {}
+        self._keys_before: bytes | None = None
+        """What followed the stamp of the last usable message of keys."""
         self._presses: list[Press] = []
         self._stick = StickMoment()
         self._devices: dict[str, None] = {}
@@ -250,11 +255,18 @@ class _Collector:
                 self._add_one(topic, block.connection.msgtype, received_ns, block.content[start:start + size])
 
     def _add_one(self, topic: str, msgtype: str, received_ns: int, raw: bytes) -> None:
+        if topic == contract.KEYS.full_name and raw[_AFTER_STAMP:] == self._keys_before:
+            return  # a source repeats what is down many times a second
         message = self._message(raw, msgtype)
-        if message is None:
-            self._unusable[topic] += 1
-        else:
+        try:
+            if message is None:
+                raise ValueError
             self._one_by_one[topic](received_ns, message)
+        except ValueError:
+            self._unusable[topic] += 1
+            return
+        if topic == contract.KEYS.full_name:
+            self._keys_before = raw[_AFTER_STAMP:]
 
     def _running_on(self, received_ns: int) -> int:
         """The recorder's time, which runs on where its clock was set back between two files of a bag."""
@@ -338,22 +350,15 @@ class _Collector:
 
     def _add_keys(self, received_ns: int, message: Any) -> None:
         source = message.header.frame_id
-        try:
-            pressed = self._keys.setdefault(source, KeyPresses()).update(message.buttons.tolist())
-            is_held = any(self._stick.of([axis]).any() for axis in message.axes.tolist())
-        except ValueError:
-            self._unusable[contract.KEYS.full_name] += 1
-            return
+        pressed = self._keys.setdefault(source, KeyPresses()).update(message.buttons.tolist())
+        is_held = any(self._stick.of([axis]).any() for axis in message.axes.tolist())
         self._presses += [Press(received_ns, source, key) for key in pressed]
         for kind, is_used in (('keys', pressed), ('stick', is_held)):
             if is_used:
                 self._devices.setdefault(f'{kind} ({source})')
 
     def _add_judgement(self, received_ns: int, message: Any) -> None:
-        try:
-            self._judgements.append(Judgement(received_ns, message.key, Verdict(message.value)))
-        except ValueError:
-            self._unusable[contract.VERDICT.full_name] += 1
+        self._judgements.append(Judgement(received_ns, message.key, Verdict(message.value)))
 
     def _add_statuses(self, received_ns: int, message: Any) -> None:
         for status in message.status:

@@ -86,9 +86,18 @@ class BagWriter:
             name, 'cdr', self._schemas[type_name], {'offered_qos_profiles': qos, 'topic_type_hash': type_hash})
 
     def write(self, channel: int, data: bytes, sent: int, received: int, sequence: int = 0) -> None:
-        """Add one serialized message. Times in ns; ``sequence`` is the publisher's own count of its messages."""
+        """Add one serialized message.
+
+        Args:
+            channel: from :meth:`add_topic`.
+            sent, received: ns. A garbled packet names any time for ``sent``: one that rosbag2 cannot hold becomes that
+                of receipt. Before 1970 it is 1970.
+            sequence: the publisher's own count of its messages.
+        """
+        received = max(received, 0)
         self._writer.add_message(
-            channel, log_time=received, data=data, publish_time=sent, sequence=sequence & 0xffffffff)
+            channel, log_time=received, data=data, publish_time=sent if 0 <= sent < 2**63 else received,
+            sequence=sequence & 0xffffffff)
         self.messages += 1
 
     def flush(self) -> None:

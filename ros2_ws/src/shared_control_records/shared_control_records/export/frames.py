@@ -14,7 +14,9 @@
 
 """The episodes of a bag, time-aligned at the policy's rate."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +29,7 @@ from shared_control.verdict import Verdict
 
 from ..bag.ball_tracks import EpisodeTrack, episode_tracks
 from ..bag.reader import Bag
+from ..bag.recorded import Wrenches
 from ..bag.runs import run_window
 
 PERIOD_NS = round(POLICY_PERIOD * 1e9)
@@ -121,16 +124,19 @@ def episode_frames(bag: Bag) -> list[EpisodeFrames]:
         raise ValueError(f'the bag {bag.path} has no messages on {missing}, but the other part of the sum: it is not '
                          'whole')
     tracks = episode_tracks(bag)
-    frames = [_frames(bag, track, all(parts.values())) for track in tracks if track.verdict is not Verdict.DISCARD]
+    between = cache(Wrenches.between)  # most episodes are of one run, and each would sort all of it
+    frames = [_frames(bag, track, all(parts.values()), between) for track in tracks
+              if track.verdict is not Verdict.DISCARD]
     if not frames:
         discarded = ' that was not discarded' if tracks else ''
         raise ValueError(f'the bag {bag.path} holds no finished episode{discarded}')
     return frames
 
 
-def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool) -> EpisodeFrames:
+def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool,
+            between: Callable[[Wrenches, tuple[int, int]], Wrenches]) -> EpisodeFrames:
     window = run_window(bag, track.received_ns[0])
-    agent = bag.agent.between(window).stamp_ns
+    agent = between(bag.agent, window).stamp_ns
     agent = agent[np.searchsorted(agent, track.start_ns):]
     # The agent's stamps are those of the states that it acted on.
     start_ns = int(agent[0]) if len(agent) and agent[0] - track.start_ns < PERIOD_NS else track.start_ns
@@ -141,7 +147,7 @@ def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool) -> EpisodeFrames:
     moments = {}
     for who, wrenches in (('applied', bag.applied), *(
             (('agent', bag.agent_applied), ('human', bag.human_applied)) if with_parts else ())):
-        own = wrenches.between(window)
+        own = between(wrenches, window)
         if not len(own.stamp_ns):
             raise ValueError(f'the bag {bag.path} has no moments of episode {track.number}')
         moments[who] = own.moment_at(begin + PERIOD_NS - 1)

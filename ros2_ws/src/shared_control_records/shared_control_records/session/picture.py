@@ -17,6 +17,7 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -293,8 +294,9 @@ def _moments_of(bag: Bag, wrenches: Wrenches, taught: list[EpisodeTrack], starts
                 ) -> tuple[np.ndarray, np.ndarray]:
     """The moments once a policy period, and when on the common axis: (n,), s, and (n, k), N m."""
     seconds, moments, drawn_until = [], [], 0.0
+    between = cache(wrenches.between)  # most episodes are of one run, and each would sort all of it
     for track, start in zip(taught, starts, strict=True):
-        own = wrenches.between(run_window(bag, track.received_ns[0]))
+        own = between(run_window(bag, track.received_ns[0]))
         end = start + _duration(track)
         at = np.arange(drawn_until, end, POLICY_PERIOD)
         if len(own.stamp_ns):

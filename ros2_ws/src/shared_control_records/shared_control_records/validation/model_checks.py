@@ -79,7 +79,7 @@ def check_model(model: RobotModel) -> list[Check]:
 def home_figures(model: RobotModel) -> HomeFigures:
     """The reference posture, by Table 2 and as it is."""
     table_2, full = (end_pose(chain(model.spec.home))[:3, 3] for chain in (table_2_chain, full_chain))
-    k_w = manipulability(model.jacobian(model.spec.home))
+    k_w = model.manipulability(model.spec.home)
     return HomeFigures(
         tuple(table_2.tolist()), tuple(full.tolist()), float(np.linalg.norm(table_2 - full)), k_w, 1 - k_w ** 2)
 

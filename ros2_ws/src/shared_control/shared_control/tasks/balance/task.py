@@ -22,7 +22,7 @@ import numpy as np
 
 from ...keys import LEFT_AND_RIGHT, KeyMap
 from ...plant import PlantState
-from ...robot.model import RobotModel, manipulability, pitch
+from ...robot.model import RobotModel, pitch
 from ...scene import Box, Scene
 from ..settings_check import check_numbers
 from ..task import OBSERVATION_BOUND, Task, settled
@@ -138,7 +138,7 @@ class Balance(Task):
             velocity=state.ball_velocity[0],
             pitch=pitch(rotation),
             ball_height=state.ball_position[2],
-            manipulability=manipulability(model.jacobian(state.q)))
+            manipulability=model.manipulability(state.q))
 
     def observe(self, state: BalanceState) -> np.ndarray:
         """Position error, velocity and pitch, scaled; (3,), float32."""

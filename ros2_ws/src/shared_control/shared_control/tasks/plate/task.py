@@ -22,7 +22,7 @@ import numpy as np
 
 from ...keys import Key, KeyMap
 from ...plant import PlantState
-from ...robot.model import RobotModel, manipulability
+from ...robot.model import RobotModel
 from ...scene import Scene
 from ..settings_check import check_numbers
 from ..task import OBSERVATION_BOUND, Task, settled
@@ -126,7 +126,7 @@ class Plate(Task):
             ball=(x, y), ball_velocity=(state.ball_velocity[0], state.ball_velocity[1]),
             lean=(float(rotation[0, 2]), float(rotation[1, 2])), height=height,
             position_error=math.hypot(self.scene.goal[0] - x, self.scene.goal[1] - y),
-            manipulability=manipulability(model.jacobian(state.q)))
+            manipulability=model.manipulability(state.q))
 
     def on_tray(self, state: PlateState) -> tuple[float, float]:
         """See :class:`Task`."""
