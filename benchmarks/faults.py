@@ -47,7 +47,9 @@ def main() -> int:
             print('interrupted: what follows is of the sessions that had ended')
     outcomes = campaign.outcomes
     print(table(outcomes))
-    print(f'{len(outcomes)} of {len(faults)} faults, {sum(len(o.violations) for o in outcomes)} violations')
+    judged = [outcome for outcome in outcomes if outcome.judged]
+    print(f'{len(outcomes)} of {len(faults)} faults, {sum(len(o.violations) for o in judged)} violations; '
+          f"{len(outcomes) - len(judged)} not judged, since the campaign's own node stood still")
     args.output.parent.mkdir(parents=True, exist_ok=True)
     args.output.write_text(json.dumps([asdict(outcome) for outcome in outcomes], indent=2) + '\n')
     print(f'written to {args.output}')
