@@ -11,6 +11,7 @@ from shared_control_bringup import parameters
 from shared_control_learning.episode_table import read_rows
 from shared_control_testing.live_session import Session
 from shared_control_testing.nodes import *  # noqa: F403
+from shared_control_testing.page import served
 from shared_control_testing.terminal import Terminal
 
 BENCHMARKS = Path(__file__).parents[1] / 'benchmarks'
@@ -69,6 +70,17 @@ def unpaced(tmp_path) -> Path:
     path = tmp_path / 'unpaced.yaml'
     parameters.save(content, path)
     return path
+
+
+@pytest.fixture(scope='class')
+def page_session(domain_id, tmp_path_factory):
+    """A session taught on the page, then tested alone once on the graph and once off it: process, address, folder."""
+    scratch = tmp_path_factory.mktemp('session')
+    parameters_file = scratch / 'one_test.yaml'
+    parameters_file.write_text('ppo_agent_node: {ros__parameters: {test_episodes: 1}}')
+    with served('session', '--tutor', 'page', '--test-episodes', '1', '--params-file', str(parameters_file),
+                '--output', str(scratch / 'session')) as session:
+        yield *session, scratch / 'session'
 
 
 @pytest.fixture

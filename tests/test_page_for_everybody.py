@@ -9,7 +9,7 @@ import pytest
 from shared_control_records.study.form_page import FormPage
 from shared_control_records.study.plan_file import Question
 from shared_control_records.study.progress import SCALES
-from shared_control_testing.page import Browser, serve, served
+from shared_control_testing.page import Browser, serve
 from shared_control_testing.sessions import lesson, record
 from teach_page_node import layout
 from teach_page_node.address import free_port
@@ -19,13 +19,6 @@ pytestmark = pytest.mark.alone
 SIDEWAYS = (844, 390)
 ENLARGED = (683, 384)
 """A window of 1366 x 768 at 200 %."""
-
-
-@pytest.fixture(scope='class')
-def session(domain_id, tmp_path_factory):
-    folder = tmp_path_factory.mktemp('session') / 'session'
-    with served('session', '--tutor', 'page', '--test-episodes', '1', '--output', str(folder)) as session:
-        yield *session, folder
 
 
 @pytest.fixture(scope='module')
@@ -46,9 +39,9 @@ def key(name):
 class TestASessionByTouch:
     """On a phone held sideways, in this order; what axe-core says of every state."""
 
-    def test_practice(self, browser, session):
+    def test_practice(self, browser, page_session):
         browser.hold_as_a_phone(*SIDEWAYS)
-        browser.open(session[1])
+        browser.open(page_session[1])
         browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
         browser.touch(key('left'))
         browser.wait(lambda: browser.text('human-moment') == '+5.0', 'the push')
@@ -105,18 +98,18 @@ class TestASessionByTouch:
         browser.wait(lambda: browser.text('phase').startswith('The robot alone'), 'the test', 60)
         assert browser.barriers() == []
 
-    def test_enlarged_the_end_card_is_whole_and_within_reach(self, browser, session):
+    def test_enlarged_the_end_card_is_whole_and_within_reach(self, browser, page_session):
         browser.wait(lambda: browser.part('close').is_displayed(), 'the end', 180)
         assert browser.barriers() == [] == browser.nameless()
         browser.size(*ENLARGED)
         browser.script('document.querySelector(\'[data-part="close"]\').scrollIntoView()')
-        tested = json.loads((session[2] / 'test.json').read_text())
+        tested = json.loads((page_session[2] / 'test.json').read_text())
         assert browser.text('end-words').endswith(f'in {tested["successes"]} of 1 tests.')
         browser.wait(lambda: browser.script('return document.documentElement.scrollWidth <= innerWidth'), 'the layout')
         assert browser.complaints() == []
         browser.touch(part('close'))
-        session[0].communicate(timeout=60)
-        assert session[0].returncode == 0
+        page_session[0].communicate(timeout=60)
+        assert page_session[0].returncode == 0
 
 
 def test_a_replay_has_no_barriers(browser, tmp_path):

@@ -19,6 +19,7 @@ import os
 import random
 import resource
 import signal
+import subprocess
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -158,10 +159,14 @@ class Campaign:
                 outcome = Outcome(fault, folder.name)
                 seen.outcomes.append(outcome)
                 results.send(seen)
-                if fault.kind == 'interrupt':
-                    session = self._interrupt(session, folder, outcome)
-                else:
-                    self._inject(outcome, session, graph, seen.killed_ns)
+                try:
+                    if fault.kind == 'interrupt':
+                        session = self._interrupt(session, folder, outcome)
+                    else:
+                        self._inject(outcome, session, graph, seen.killed_ns)
+                except (AssertionError, subprocess.TimeoutExpired) as error:  # what was waited for did not come
+                    outcome.violations.append(f'{fault.kind}: {error}')
+                    break
                 self._say(f'{fault}: {outcome.what}')
                 moved = graph.wait_for_change(session, MUST_MOVE_S)
                 if not moved:
@@ -327,8 +332,12 @@ class _Graph:
         observer.spin(lambda: observer.node.count_publishers(contract.EFFORT_COMMANDS.name) > 0, 60.0, 'its commands')
         observer.spin_for(2 * STOPPED_S)
         wrong = [f'emergency stop: {len(commands)} torques after a restart of the controller'] if commands else []
-        observer.call(Trigger, CONTROLLER_RESET.name, Trigger.Request())
-        observer.call(SetBool, CONTROLLER_ENABLE.name, SetBool.Request(data=True))
+        for service, name, request in ((Trigger, CONTROLLER_RESET.name, Trigger.Request()),
+                                       (SetBool, CONTROLLER_ENABLE.name, SetBool.Request(data=True))):
+            try:
+                observer.call(service, name, request, 10.0)
+            except AssertionError:  # an answer is lost when it comes before whoever asked has been found
+                observer.call(service, name, request)
         observer.node.destroy_publisher(publisher)
         return wrong
 
