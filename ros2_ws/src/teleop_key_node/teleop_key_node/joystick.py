@@ -14,6 +14,8 @@
 
 """A gamepad or the like, as its driver publishes it on /joy: says on /human/keys what its axes and buttons mean."""
 
+from collections import deque
+
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
 from shared_control.keys import Key
@@ -24,6 +26,8 @@ from shared_control_ros.parameters import ParameterError, declare
 
 NAME = 'joy'
 """The source that a driver is taken for which gives no name, or the name of a source of ours."""
+KNOWN = 20
+"""Drivers that are not announced again when they are heard."""
 
 
 class Joystick:
@@ -52,7 +56,7 @@ class Joystick:
             raise ParameterError(f'parameter joy_{error}') from error
         self._heard = Polled(node, contract.JOY, depth=50)
         self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._known: set[str] = set()
+        self._known: deque[str] = deque(maxlen=KNOWN)
 
     def poll(self) -> None:
         """Pass on what has come."""
@@ -60,7 +64,7 @@ class Joystick:
             if joy.header.frame_id in (*self._reserved, ''):
                 joy.header.frame_id = NAME
             if joy.header.frame_id not in self._known:
-                self._known.add(joy.header.frame_id)
+                self._known.append(joy.header.frame_id)
                 self._node.get_logger().info(
                     f'{joy.header.frame_id!r} on {self._heard.topic_name}: {len(joy.axes)} axes, {len(joy.buttons)} '
                     'buttons; joy_axes and joy_buttons say which of them count')

@@ -22,6 +22,9 @@ from shared_control_ros import contract
 from shared_control_ros.parameters import ParameterError
 from std_msgs.msg import String
 
+SOURCES = 20
+"""So many are remembered, those that were heard last: whoever makes up names fills no memory."""
+
 
 class VerdictButtons:
     """Finds presses (rising edges) of these buttons in the states of each source, and publishes verdicts.
@@ -53,4 +56,7 @@ class VerdictButtons:
         down = {verdict for verdict, button in self._buttons.items() if button < len(buttons) and buttons[button]}
         for verdict in down - self._down.get(source, down):
             self._publisher.publish(String(data=str(verdict)))
+        self._down.pop(source, None)
         self._down[source] = down
+        if len(self._down) > SOURCES:  # not when one falls silent: drivers tell of changes alone
+            del self._down[next(iter(self._down))]
