@@ -218,4 +218,4 @@ def write_episodes(path: Path, lessons: list[Lesson]) -> None:
 
 def write_settings(path: Path, tutor: str = 'simulated: expert') -> None:
     """The options."""
-    path.write_text(json.dumps({'preset': 'coached', 'tutor': tutor, 'seed': 0}))
+    path.write_text(json.dumps({'task': 'balance', 'preset': 'coached', 'tutor': tutor, 'seed': 0}))
