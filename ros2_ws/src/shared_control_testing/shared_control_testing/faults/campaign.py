@@ -30,6 +30,7 @@ from pathlib import Path
 from shared_control.contract import CONTROLLER_ENABLE, CONTROLLER_RESET
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
+from shared_control_ros.processes import leave_with_the_parent
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 
@@ -145,6 +146,7 @@ class Campaign:
         self.outcomes += seen.outcomes
 
     def _run_session(self, folder: Path, deadline: float, results: Connection) -> None:
+        leave_with_the_parent()
         self._machine.set_clock(-self._machine.clock_s)
         graph = _Graph(self._domain)
         session = self._start(folder)
