@@ -49,7 +49,7 @@ def main() -> int:
     print(table(outcomes))
     judged = [outcome for outcome in outcomes if outcome.judged]
     print(f'{len(outcomes)} of {len(faults)} faults, {sum(len(o.violations) for o in judged)} violations; '
-          f"{len(outcomes) - len(judged)} not judged, since the campaign's own node stood still")
+          f"{len(outcomes) - len(judged)} not judged, since the campaign's own process stood still or failed")
     args.output.parent.mkdir(parents=True, exist_ok=True)
     args.output.write_text(json.dumps([asdict(outcome) for outcome in outcomes], indent=2) + '\n')
     print(f'written to {args.output}')

@@ -17,6 +17,7 @@
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -38,9 +39,9 @@ class Session:
         """The process id of the node ``name``; 0 while it does not run."""
         children = Path(f'/proc/{self.process.pid}/task/{self.process.pid}/children').read_text().split()
         for child in children:
-            command = Path(f'/proc/{child}/cmdline')
-            if command.exists() and node_module(name) in command.read_text().split('\0'):
-                return int(child)
+            with suppress(FileNotFoundError, ProcessLookupError):  # it may have just ended
+                if node_module(name) in Path(f'/proc/{child}/cmdline').read_text().split('\0'):
+                    return int(child)
         return 0
 
     def output(self, timeout: float = 300.0) -> str:

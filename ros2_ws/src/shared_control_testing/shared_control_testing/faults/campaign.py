@@ -25,6 +25,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
+from multiprocessing.context import ForkProcess
 from pathlib import Path
 
 from shared_control.contract import CONTROLLER_ENABLE, CONTROLLER_RESET
@@ -70,7 +71,7 @@ class Outcome:
     """What was done, and when."""
     violations: list[str] = field(default_factory=list)
     judged: bool = True
-    """False when nothing can be said, since the campaign's own node stood still."""
+    """False when nothing can be said, since the campaign's own process stood still or failed."""
 
 
 @dataclass
@@ -140,7 +141,8 @@ class Campaign:
             seen.outcomes = seen.outcomes[-1:]
             for outcome in seen.outcomes:
                 outcome.judged = False
-                self._say(f"{outcome.fault} ({folder.name}): not judged, since the campaign's own node stood still")
+                self._say(f'{outcome.fault} ({folder.name}): not judged, since the process that saw it '
+                          f'{_ended(process)}')
         done = [outcome.fault for outcome in seen.outcomes]
         self._waiting = [fault for fault in self._waiting if fault not in done]
         self.outcomes += seen.outcomes
@@ -346,6 +348,11 @@ class _Graph:
     def close(self) -> None:
         """Leave."""
         self.observer.close()
+
+
+def _ended(process: ForkProcess) -> str:
+    """How the process of a session ended that told nothing."""
+    return 'stood still' if process.exitcode == -signal.SIGKILL else f'failed ({process.exitcode})'
 
 
 def _paused(process: int, seconds: float, serve: Callable[[], None]) -> None:
