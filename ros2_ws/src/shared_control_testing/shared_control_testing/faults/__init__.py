@@ -14,7 +14,8 @@
 
 """A fault campaign on the live graph: faults at random moments of sessions, and what must hold in spite of them."""
 
-from .campaign import Campaign, Outcome
+from .campaign import Campaign
 from .plan import Fault, draw
+from .session import Outcome
 
 __all__ = ['Campaign', 'Fault', 'Outcome', 'draw']

@@ -36,7 +36,7 @@ class Machine:
     """Close it in the end.
 
     Args:
-        folder: for what is compiled.
+        folder: for what is compiled, once.
 
     Raises:
         RuntimeError: there is no C compiler.
@@ -47,8 +47,9 @@ class Machine:
         if compiler is None:
             raise RuntimeError('clocks are set and packets lost by a library that cc compiles: install a C compiler')
         library, plan = folder / 'machine.so', folder / 'machine.plan'
-        subprocess.run([compiler, '-std=gnu11', '-O2', '-shared', '-fPIC', '-o', library, _SOURCE, '-ldl', '-lpthread'],
-                       check=True)
+        if not library.exists():
+            subprocess.run([compiler, '-std=gnu11', '-O2', '-shared', '-fPIC', '-o', library, _SOURCE, '-ldl',
+                            '-lpthread'], check=True)
         plan.write_bytes(bytes(_PLAN.size))
         with plan.open('r+b') as file:
             self._plan = mmap.mmap(file.fileno(), _PLAN.size)
