@@ -215,6 +215,11 @@ BOX = ('const b = document.querySelector("%s").getBoundingClientRect();'
 class TestASessionByTheKeyboardAlone:
     """In this order, from the practice to the end card and beyond."""
 
+    @pytest.fixture(scope='class')
+    @staticmethod
+    def session(page_session):
+        return page_session
+
     @staticmethod
     def tab_to(browser, name):
         """Press Tab until the focus is on a button."""
@@ -224,8 +229,8 @@ class TestASessionByTheKeyboardAlone:
                 return
         raise AssertionError(f'Tab does not reach {name}')
 
-    def test_every_size_shows_what_teaching_needs(self, browser, page_session):
-        browser.open(page_session[1])
+    def test_every_size_shows_what_teaching_needs(self, browser, session):
+        browser.open(session[1])
         browser.wait(lambda: browser.text('phase') == 'Practice', 'practice')
         for width, height in SIZES:
             browser.size(width, height)
@@ -259,9 +264,9 @@ class TestASessionByTheKeyboardAlone:
         for key in (Keys.ARROW_RIGHT, 'd'):
             browser.type(key)  # the ball falls, soon
 
-    def test_the_end_card_has_the_result_and_stays(self, browser, page_session):
+    def test_the_end_card_has_the_result_and_stays(self, browser, session):
         browser.wait(lambda: browser.part('close').is_displayed(), 'the end', timeout=120)
-        tested = json.loads((page_session[2] / 'test.json').read_text())
+        tested = json.loads((session[2] / 'test.json').read_text())
         said = f'Your robot alone kept the ball in the middle in {tested["successes"]} of 1 tests.'
         assert browser.text('end-words') == said
         browser.wait(lambda: browser.script(
@@ -271,16 +276,16 @@ class TestASessionByTheKeyboardAlone:
         assert status == 200
         browser.driver.refresh()
         browser.wait(lambda: browser.part('close').is_displayed() and browser.text('end-words') == said, 'it again')
-        assert page_session[0].poll() is None
+        assert session[0].poll() is None
 
-    def test_closing_is_a_choice(self, browser, page_session):
+    def test_closing_is_a_choice(self, browser, session):
         self.tab_to(browser, 'close')
         browser.type(Keys.ENTER)
-        page_session[0].communicate(timeout=60)
-        assert page_session[0].returncode == 0
+        session[0].communicate(timeout=60)
+        assert session[0].returncode == 0
         assert browser.text('end-words') == 'You can close this window.'
         assert not browser.script('const p = document.getElementById("popup"); return p && p.offsetParent')
-        assert not (page_session[2] / 'ending.json').exists()
+        assert not (session[2] / 'ending.json').exists()
 
 
 @pytest.fixture
