@@ -26,6 +26,9 @@ from tqdm import tqdm
 
 ALLOWED = {'memory_mb': 0.2, 'descriptors': 0.02, 'threads': 0.02, 'shared_memory_mb': 0.05, 'tick_p50_ms': 0.002}
 """Growth a minute. The learner keeps every correction, some 20 kB an episode."""
+PARAMETERS = 'session_recorder_node: {ros__parameters: {split_minutes: 2.0}}'
+"""The index of a file of the bag stays in memory until the file ends, 0.3 MB a minute. By default a file ends after a
+quarter of an hour: so that it does not look like growth, it ends sooner here, and there are more files to grow with."""
 WARM_UP = 0.2
 """Part of the samples that is left out."""
 
@@ -110,8 +113,10 @@ def soak(minutes: float, every: float, folder: Path, domain: int) -> list[Sample
     observer = Observer(domain)
     diagnostics = observer.listen(contract.DIAGNOSTICS, 100)
     log = (folder / 'session.log').open('w')
+    parameters = folder / 'parameters.yaml'
+    parameters.write_text(PARAMETERS)
     session = Session(['--tutor', 'sim', '--minutes', str(minutes + 2), '--episodes', '0', '--test-episodes', '0',
-                       '--output', str(folder / 'session')], stdout=log, stderr=log)
+                       '--params-file', str(parameters), '--output', str(folder / 'session')], stdout=log, stderr=log)
     samples: list[Sample] = []
     processes = Processes()
     try:

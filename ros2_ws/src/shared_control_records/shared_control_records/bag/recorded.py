@@ -79,9 +79,12 @@ class Wrenches:
 
     def between(self, window: tuple[int, int]) -> 'Wrenches':
         """Those received in a window of the recorder's time, in the order of their stamps."""
-        rows = np.flatnonzero((self.received_ns >= window[0]) & (self.received_ns < window[1]))
-        rows = rows[np.argsort(self.stamp_ns[rows], kind='stable')]
-        return Wrenches(self.received_ns[rows], self.stamp_ns[rows], self.moment[rows])
+        rows = slice(*np.searchsorted(self.received_ns, window))
+        found = Wrenches(self.received_ns[rows], self.stamp_ns[rows], self.moment[rows])
+        if (np.diff(found.stamp_ns) >= 0).all():
+            return found
+        order = np.argsort(found.stamp_ns, kind='stable')
+        return Wrenches(found.received_ns[order], found.stamp_ns[order], found.moment[order])
 
     def moment_at(self, stamps_ns: np.ndarray) -> np.ndarray:
         """The newest moment at each of some times of the robot, (m, k), N m; the first one before that.
