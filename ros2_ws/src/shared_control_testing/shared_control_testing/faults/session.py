@@ -113,7 +113,7 @@ class _Run:
             self._seen.outcomes.append(outcome)
             self._results.send(self._seen)
             try:
-                self._interrupt(outcome) if fault.kind == 'interrupt' else self._inject(outcome)
+                self._inject(outcome)
             except (AssertionError, subprocess.TimeoutExpired) as error:  # what was waited for did not come
                 outcome.violations.append(f'{fault.kind}: {error}')
                 break
@@ -146,6 +146,9 @@ class _Run:
 
     def _inject(self, outcome: Outcome) -> None:
         fault = outcome.fault
+        if fault.kind == 'interrupt':
+            self._interrupt(outcome)
+            return
         topics = {topic.name: topic for topic in TOPICS}
         if fault.target in topics:
             sent = self._graph.disturb(contract.ros_topic(topics[fault.target]), fault)
