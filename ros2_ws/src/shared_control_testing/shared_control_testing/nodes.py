@@ -146,6 +146,10 @@ def start_node(domain_id: int, tmp_path_factory: pytest.TempPathFactory) -> Iter
         yield start
 
 
+ASK_AGAIN_S = 15.0
+"""After so long a response does not come any more."""
+
+
 class Observer:
     """A node of the test itself, in the test's process."""
 
@@ -195,17 +199,31 @@ class Observer:
 
     def call(self, service_type: type, name: str, request: Any, timeout: float = 60.0,
              beside: Callable[[], Any] = lambda: None) -> Any:
-        """Call a service and give its response; ``beside()`` is called again and again until that is there."""
+        """Call a service and give its response; ``beside()`` is called again and again until that is there.
+
+        It is called again after a while: a response is lost that comes before the server has found who asked.
+        """
         client = self.node.create_client(service_type, name)
         deadline = time.monotonic() + timeout
         while not client.service_is_ready():
             assert time.monotonic() < deadline, f'no service {name}'
             beside()
             self._serve(0.01)
-        future = client.call_async(request)
-        self.spin(lambda: beside() or future.done(), timeout, f'response of {name}')
+        futures = []
+        again = 0.0
+
+        def answered() -> Any:
+            nonlocal again
+            beside()
+            if time.monotonic() >= again:
+                again = time.monotonic() + ASK_AGAIN_S
+                futures.append(client.call_async(request))
+            return next((future for future in futures if future.done()), None)
+
+        self.spin(answered, timeout, f'response of {name}')
+        response = next(future for future in futures if future.done()).result()
         self.node.destroy_client(client)
-        return future.result()
+        return response
 
     def close(self) -> None:
         """Leave the graph."""

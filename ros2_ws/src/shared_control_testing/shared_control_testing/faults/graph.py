@@ -95,10 +95,7 @@ class Graph:
         wrong = [f'emergency stop: {len(commands)} torques after a restart of the controller'] if commands else []
         for service, name, request in ((Trigger, CONTROLLER_RESET.name, Trigger.Request()),
                                        (SetBool, CONTROLLER_ENABLE.name, SetBool.Request(data=True))):
-            try:
-                observer.call(service, name, request, 10.0)
-            except AssertionError:  # an answer is lost when it comes before whoever asked has been found
-                observer.call(service, name, request)
+            observer.call(service, name, request)
         observer.node.destroy_publisher(publisher)
         return wrong
 
