@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 from shared_control_learning.episode_table import TABLE_NAME, read_rows
@@ -71,7 +72,8 @@ def test_a_policy_is_taught_from_another_machine(machines, start_node, monkeypat
     output = tmp_path / 'learner'
     start_node('panda_sim_node', python=robots)
     start_node('torque_ctrl_node', python=robots, enabled=True)
-    teleop = start_node('teleop_key_node', python=persons, use_sim_time=True, screen='off')
+    start_teleop = partial(start_node, 'teleop_key_node', python=persons, use_sim_time=True, screen='off')
+    teleop = start_teleop()
     start_node('sim_tutor_node', python=persons, use_sim_time=True)
     agent = start_node('ppo_agent_node', python=persons, use_sim_time=True, episode_seconds=4.0, output=str(output))
 
@@ -84,10 +86,10 @@ def test_a_policy_is_taught_from_another_machine(machines, start_node, monkeypat
     try:
         until(lambda: felt() > 0, 60.0)
     except AssertionError:
-        # Seen in one run of six: teleop publishes nothing, as if it never heard the simulator's clock from the other
-        # machine. Started anew it does; why is not known yet.
+        # Seen twice: teleop published nothing, as if it never heard the simulator's clock from the other machine. Why,
+        # and whether another start mends it, is not known yet.
         teleop.stop()
-        start_node('teleop_key_node', python=persons, use_sim_time=True, screen='off')
+        start_teleop()
         until(lambda: felt() > 0)
     cable(robots, 'down')
     time.sleep(3.0)

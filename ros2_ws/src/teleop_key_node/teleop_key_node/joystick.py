@@ -24,10 +24,10 @@ from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.parameters import ParameterError, declare
 
+from .sources import REMEMBERED
+
 NAME = 'joy'
 """The source that a driver is taken for which gives no name, or the name of a source of ours."""
-KNOWN = 20
-"""Drivers that are not announced again when they are heard."""
 
 
 class Joystick:
@@ -56,7 +56,7 @@ class Joystick:
             raise ParameterError(f'parameter joy_{error}') from error
         self._heard = Polled(node, contract.JOY, depth=50)
         self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
-        self._known: deque[str] = deque(maxlen=KNOWN)
+        self._known: deque[str] = deque(maxlen=REMEMBERED)
 
     def poll(self) -> None:
         """Pass on what has come."""

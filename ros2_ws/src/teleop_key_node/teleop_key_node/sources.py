@@ -19,6 +19,9 @@ from collections.abc import Sequence
 import numpy as np
 from shared_control.teaching.device import Device
 
+REMEMBERED = 20
+"""So many sources are remembered where silent ones are not forgotten: whoever makes up names fills no memory."""
+
 
 class Sources:
     """Hears any number of sources of a device; none of them can leave a moment behind.

@@ -22,8 +22,7 @@ from shared_control_ros import contract
 from shared_control_ros.parameters import ParameterError
 from std_msgs.msg import String
 
-SOURCES = 20
-"""So many are remembered, those that were heard last: whoever makes up names fills no memory."""
+from .sources import REMEMBERED
 
 
 class VerdictButtons:
@@ -58,5 +57,5 @@ class VerdictButtons:
             self._publisher.publish(String(data=str(verdict)))
         self._down.pop(source, None)
         self._down[source] = down
-        if len(self._down) > SOURCES:  # not when one falls silent: drivers tell of changes alone
+        if len(self._down) > REMEMBERED:  # not when one falls silent: drivers tell of changes alone
             del self._down[next(iter(self._down))]

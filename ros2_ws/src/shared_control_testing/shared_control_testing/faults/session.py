@@ -94,12 +94,12 @@ class _Run:
         self._folder, self._results = folder, results
         self._seen = Seen()
         self._machine = Machine(folder.parent)
-        self._parameters = folder.with_name('unpaced.yaml')
-        self._parameters.write_text(PARAMETERS)
+        parameters = folder.with_name('unpaced.yaml')
+        parameters.write_text(PARAMETERS)
         self._graph = Graph(domain)
         self._session = self._start(
             '--tutor', 'sim', '--episodes', str(EPISODES), '--test-episodes', '1', '--seed', '0',
-            '--params-file', str(self._parameters), '--output', str(folder))
+            '--params-file', str(parameters), '--output', str(folder))
 
     def meet(self, faults: list[Fault], deadline: float) -> None:
         """Let the faults befall the session, one after the other, until it ends."""
