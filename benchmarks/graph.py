@@ -25,7 +25,7 @@ from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from shared_control_ros import contract
-from shared_control_ros.processes import node_environment, node_module
+from shared_control_ros.processes import leave_with_the_parent, node_environment, node_module
 
 ROUNDS = 7
 SECONDS = 6.0
@@ -35,7 +35,8 @@ LOOP = {'panda_sim_node': ['paced:=false'], 'torque_ctrl_node': ['enabled:=true'
 
 
 def to_the_loops_core() -> None:
-    """Keep this process on the core that a session gives to the loop."""
+    """Keep this process on the core that a session gives to the loop, and let it end with its parent."""
+    leave_with_the_parent()
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
 

@@ -23,6 +23,7 @@ from shared_control.command_line import script_parser
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
+from shared_control_ros.processes import leave_with_the_parent
 from shared_control_ros.torque_command import torque_command
 from std_msgs.msg import Float64MultiArray
 
@@ -82,7 +83,8 @@ def main() -> None:
     if args.answer:
         answer(args.raw)
         return
-    other = subprocess.Popen([sys.executable, __file__, '--answer', *['--raw'] * args.raw])
+    other = subprocess.Popen([sys.executable, __file__, '--answer', *['--raw'] * args.raw],
+                             preexec_fn=leave_with_the_parent)
     try:
         p50, p99 = np.percentile(measure(args.rounds, args.raw), [50, 99])
     finally:

@@ -46,7 +46,7 @@ def _cpu(command: list[str]) -> float:
 
 def session_s() -> dict[str, float]:
     """Seconds from the command to each node's readiness, to the first tick and to the first episode."""
-    from shared_control_ros.processes import node_environment
+    from shared_control_ros.processes import leave_with_the_parent, node_environment
     domain = next(DOMAINS)
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / 'session'
@@ -56,7 +56,7 @@ def session_s() -> dict[str, float]:
                 [str(FOLDER / 'shared-control'), 'session', '--tutor', 'sim', '--no-screen', '--episodes', '1',
                  '--test-episodes', '0', '--output', str(session)],
                 env={**node_environment(), 'ROS_DOMAIN_ID': str(domain)}, stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL)
+                stdout=subprocess.DEVNULL, preexec_fn=leave_with_the_parent)
             try:
                 found = graph.first_tick_and_episode(began)
             finally:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Once a second: how fast a node runs and what it misses."""
+"""Once a second: how fast a node runs and what is wrong with what it hears."""
 
 import time
 
@@ -21,7 +21,10 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 from . import contract
-from .fast_loop import follow_clock
+from .fast_loop import Polled, follow_clock
+
+PATIENCE = 10.0
+"""The topic that a node cannot do without may have no publisher for so long, s: nodes start, and start anew."""
 
 
 class Diagnostics:
@@ -30,12 +33,15 @@ class Diagnostics:
     Args:
         node: the node that publishes.
         period: the loop's nominal period, s. A period of more than 1.5 times that is an overrun.
+        needs: the topic that the node cannot do without: that it has no publisher is a problem.
     """
 
     _CAPACITY = 4096
 
-    def __init__(self, node: Node, period: float):
+    def __init__(self, node: Node, period: float, needs: Polled | None = None):
         self._node = node
+        self._needs = needs
+        self._had_publisher = time.monotonic()
         self._nominal = period
         self._publisher = node.create_publisher(
             contract.DIAGNOSTICS.msg_type, contract.DIAGNOSTICS.name, contract.DIAGNOSTICS.qos)
@@ -74,6 +80,7 @@ class Diagnostics:
         self._count = 0
         p50, p99 = np.percentile(periods, [50, 99]) if periods.size else (float('nan'), float('nan'))
         status = DiagnosticStatus(name=self._node.get_fully_qualified_name(), hardware_id='')
+        problems = {**problems, **self._missing()}
         status.level = level or (DiagnosticStatus.WARN if problems else DiagnosticStatus.OK)
         status.message = '; '.join(f'{topic}: {what}' for topic, what in problems.items()) or 'ok'
         shown = {'period_p50_ms': f'{p50:.3f}', 'period_p99_ms': f'{p99:.3f}', 'overruns': self.overruns, **values}
@@ -82,3 +89,17 @@ class Diagnostics:
         follow_clock(self._node)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
+
+    def _missing(self) -> dict[str, str]:
+        if self._needs is None:
+            return {}
+        now = time.monotonic()
+        if self._needs.publisher_count():
+            self._had_publisher = now
+        if now - self._had_publisher < PATIENCE:
+            return {}
+        problem = (f'has had no publisher for {now - self._had_publisher:.0f} s: does its node run, with the same '
+                   'ROS_DOMAIN_ID? If on another machine: start this node again, since a node sees only the networks '
+                   'that were up when it started')
+        self._node.get_logger().warning(f'{self._needs.topic_name} {problem}', throttle_duration_sec=30.0)
+        return {self._needs.topic_name: problem}

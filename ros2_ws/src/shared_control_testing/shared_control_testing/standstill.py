@@ -17,6 +17,8 @@
 import subprocess
 import sys
 
+from shared_control.processes import leave_with_the_parent
+
 AS_IT_WAS = 'all at one priority'
 AS_NODES_HAVE_IT = 'the loop above the other threads'
 PRIORITIES = (AS_IT_WAS, AS_NODES_HAVE_IT)
@@ -61,5 +63,6 @@ def run_loop(priorities: str, seconds: float) -> tuple[int, int]:
     It needs real-time priority (root, or ``ulimit -r``).
     """
     command = [sys.executable, '-c', _LOOP, str(priorities == AS_IT_WAS), str(seconds)]
-    ended = subprocess.run(command, capture_output=True, text=True, timeout=seconds + 60.0)
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=seconds + 60.0,
+                           preexec_fn=leave_with_the_parent)
     return ended.returncode, int(ended.stdout or 0)

@@ -109,8 +109,8 @@ class TeleopKeyNode:
         self._wrench = base_wrench(robot.base_frame)
         self._publisher = node.create_publisher(
             contract.HUMAN_WRENCH.msg_type, contract.HUMAN_WRENCH.name, contract.HUMAN_WRENCH.qos)
-        self._diagnostics = Diagnostics(node, 1.0 / self._rate)
         self._ticker = Ticker(node, 1.0 / self._rate)
+        self._diagnostics = Diagnostics(node, 1.0 / self._rate, needs=self._ticker.clock)
         self._panel = self._open_panel()
         self._background = Background(node)
         self._ticks = 0

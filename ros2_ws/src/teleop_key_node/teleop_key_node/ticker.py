@@ -40,18 +40,19 @@ class Ticker:
         self._period = period
         self._period_ns = round(period * 1e9)
         self._ros_clock = cast(ROSClock, node.get_clock())
-        self._clock = Polled(node, contract.CLOCK) if node.get_parameter('use_sim_time').value else None
+        self.clock = Polled(node, contract.CLOCK) if node.get_parameter('use_sim_time').value else None
+        """Where the time comes from; None: from this machine."""
         self._now_ns = 0
         self._next = time.monotonic() + period
 
     def wait(self) -> int:
         """The node's time at the next tick, ns; 0 until /clock has shown it."""
-        if self._clock is None:
+        if self.clock is None:
             self._sleep()
             return self._ros_clock.now().nanoseconds
         deadline = time.monotonic() + 1.5 * self._period
         while (left := deadline - time.monotonic()) > 0:
-            message = self._clock.wait(left)
+            message = self.clock.wait(left)
             if message is None:
                 continue
             before, self._now_ns = self._now_ns, to_ns(message.clock)

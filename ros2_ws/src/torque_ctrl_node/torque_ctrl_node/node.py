@@ -114,7 +114,7 @@ class TorqueCtrlNode:
         if self._safety.is_stopped or not enabled:
             node.get_logger().warning(self._safety.problem)
 
-        self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
+        self._diagnostics = Diagnostics(node, CONTROL_PERIOD, needs=self._joint_states)
         self._watchdog = Watchdog()
         self._background = Background(node)
         self._answered_ns = 0

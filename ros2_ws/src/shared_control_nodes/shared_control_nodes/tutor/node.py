@@ -64,7 +64,7 @@ class SimTutorNode:
         self._lesson = Lesson(node)
         self._keys = KeyPublisher(node, task.keys)
         self._background = Background(node)
-        self._diagnostics = Diagnostics(node, POLICY_PERIOD)
+        self._diagnostics = Diagnostics(node, POLICY_PERIOD, needs=self._balls)
         self._stamp_ns = 0
         self._started_ns = 0
         self._q: np.ndarray | None = None

@@ -84,7 +84,7 @@ class RobotViewNode:
                 ROBOT_DESCRIPTION.msg_type, ROBOT_DESCRIPTION.name, ROBOT_DESCRIPTION.qos)
             self._description.publish(String(data=self._model.spec.description))
         self._background = Background(node)
-        self._diagnostics = Diagnostics(node, POLICY_PERIOD)
+        self._diagnostics = Diagnostics(node, POLICY_PERIOD, needs=self._balls)
 
     def _tf_publisher(self) -> Publisher | None:
         if TFMessage is None:
