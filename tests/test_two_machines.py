@@ -60,7 +60,7 @@ def cable(python, state):
     subprocess.run([python, '-c', f'import os; os.execlp("ip", "ip", "link", "set", "cable", "{state}")'], check=True)
 
 
-def until(condition, timeout=120.0):
+def until(condition, timeout=300.0):
     """Wait for it."""
     deadline = time.monotonic() + timeout
     while not condition():
