@@ -17,8 +17,12 @@
 import csv
 import hashlib
 import json
+import signal
 import socket
+import subprocess
+import sys
 import threading
+import time
 import urllib.error
 import urllib.parse
 import urllib.request
@@ -267,6 +271,21 @@ def test_other_pages_may_not_speak_to_the_form(asked):
             visitor.get(**headers)
     visitor.send(choice='go_on')
     answer()
+
+
+@pytest.mark.parametrize('end', [signal.SIGTERM, signal.SIGKILL])
+def test_a_session_ends_with_its_study(end, tmp_path):
+    session, started = tmp_path / 'session', tmp_path / 'started'
+    session.write_text(f'#!/bin/sh\necho > {started}\nexec sleep 600\n')
+    session.chmod(0o755)
+    code = ('import sys\nfrom shared_control_records.study import people\n'
+            f'sys.executable = {str(session)!r}\npeople.session([])')
+    with subprocess.Popen([sys.executable, '-c', code], stdout=subprocess.PIPE) as study:
+        while not started.exists():
+            assert study.poll() is None
+            time.sleep(0.02)
+        study.send_signal(end)
+        study.communicate(timeout=60)  # until the last process that has its output is gone
 
 
 def test_people_are_asked_where_they_teach(study):

@@ -22,6 +22,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from shared_control.processes import leave_with_the_parent
 from shared_control_learning.practice import PRACTICE_NAME
 
 from ..session.folder import SessionFolder
@@ -42,8 +43,9 @@ RunSession = Callable[[list[str]], int]
 
 
 def session(arguments: list[str]) -> int:
-    """Run a session at this terminal."""
-    return subprocess.run([sys.executable, '-m', 'shared_control', 'session', *arguments], check=False).returncode
+    """Run a session at this terminal; it ends with the study."""
+    return subprocess.run([sys.executable, '-m', 'shared_control', 'session', *arguments], check=False,
+                          preexec_fn=leave_with_the_parent).returncode
 
 
 def asker_of(people: People) -> Asker:
