@@ -15,7 +15,7 @@
 """PPO with one update an episode; with a person's corrections in its loss, when it is coached."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import numpy as np
@@ -25,6 +25,7 @@ from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task
 from stable_baselines3.common.buffers import RolloutBuffer
 from stable_baselines3.common.logger import Logger
+from torch.nn.functional import linear
 
 from .corrections import Corrections, find_corrections
 from .episode import Episode
@@ -67,6 +68,11 @@ class PpoLearner:
         self._ppo.set_logger(Logger(None, []))
         self.policy = self._ppo.policy
         self.policy.log_std.requires_grad_(ppo.std_decay is None)
+        self._layers = [(layer.weight, layer.bias)
+                        for layer in (*self.policy.mlp_extractor.policy_net, self.policy.action_net)
+                        if isinstance(layer, torch.nn.Linear)]
+        # The same numbers without gradients: switching those off and on would take as long as the rest of an action.
+        self._detached = [(weight.detach(), bias.detach()) for weight, bias in self._layers]
         self.corrections = Corrections.none(task)
         """Those of the last episodes."""
         self._noise = CorrelatedNoise(len(task.axes), ppo.noise_seconds)
@@ -89,14 +95,14 @@ class PpoLearner:
         """
         return (self.means(torch.as_tensor(observation)) + self.policy.log_std.exp() * self._noise.next()).numpy()
 
-    @torch.no_grad()
     def act(self, observation: np.ndarray) -> np.ndarray:
         """See :class:`Learner`."""
-        return self.means(torch.as_tensor(observation)).clamp(-1.0, 1.0).numpy()
+        means = _means(self._detached, torch.from_numpy(observation)).numpy()
+        return np.minimum(np.maximum(means, -1.0), 1.0)
 
     def means(self, observations: torch.Tensor) -> torch.Tensor:
         """Means of the Gaussian policy, not clipped; (..., n) -> (..., k)."""
-        return self.policy.action_net(self.policy.mlp_extractor.forward_actor(observations))
+        return _means(self._layers, observations)
 
     def learn_from(self, episode: Episode) -> dict[str, float]:
         """See :class:`Learner`."""
@@ -163,6 +169,14 @@ class PpoLearner:
         parameters = list(self.policy.named_parameters())
         return {f'policy.{name}': parameter.data for name, parameter in parameters} | adam_tensors(
             self.policy.optimizer, parameters)
+
+
+def _means(layers: Sequence[tuple[torch.Tensor, torch.Tensor]], observations: torch.Tensor) -> torch.Tensor:
+    """What a network of these weights and biases gives. For one observation its modules take twice as long."""
+    *hidden, last = layers
+    for weight, bias in hidden:
+        observations = torch.tanh(linear(observations, weight, bias))
+    return linear(observations, *last)
 
 
 @contextmanager

@@ -114,6 +114,25 @@ def test_exploring_fades_and_its_noise_is_correlated():
     assert min(neighbours) > 0.8
 
 
+@pytest.mark.parametrize('name', ['coached', 'coached_network'])
+def test_acts_as_the_network_of_stable_baselines_does_whatever_became_of_its_weights(name):
+    learner = preset(name).make()
+    untaught = {key: tensor.clone() for key, tensor in learner.tensors().items()}
+    episode = make_episode(learner, human=[5.0] * 130)
+
+    def acts():
+        own = np.array([learner.act(seen) for seen in episode.observations])
+        network, _ = learner.policy.predict(np.array(episode.observations), deterministic=True)
+        np.testing.assert_allclose(own, network.clip(-1.0, 1.0), rtol=1e-5, atol=1e-6)
+        return own
+
+    first = acts()
+    learner.learn_from(episode)
+    assert np.abs(acts() - first).max() > 0.01
+    learner.restore(untaught)
+    np.testing.assert_array_equal(acts(), first)
+
+
 def test_without_corrections_coached_ppo_is_ppo():
     coached, plain = COACHED.make(3), replace(COACHED, settings=replace(COACHED.settings, coaching=None)).make(3)
     for learner in (coached, plain):

@@ -178,7 +178,7 @@ class Observer:
 
 def integrated(integral: np.ndarray, errors: np.ndarray, seconds: float) -> np.ndarray:
     """``integral`` after ``errors`` (both as observed) have lasted ``seconds`` s."""
-    return np.clip(integral + seconds * errors, -INTEGRAL_BOUND, INTEGRAL_BOUND)
+    return np.minimum(np.maximum(integral + seconds * errors, -INTEGRAL_BOUND), INTEGRAL_BOUND)
 
 
 class BallStarts:

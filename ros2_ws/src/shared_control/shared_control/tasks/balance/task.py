@@ -148,7 +148,7 @@ class Balance(Task):
             scaled = (raw - low) / (high - low) if high > low else np.zeros(3)
         else:
             scaled = raw / self.observation_scales
-        return np.clip(scaled, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
+        return np.minimum(np.maximum(scaled, -OBSERVATION_BOUND), OBSERVATION_BOUND).astype(np.float32)
 
     def failed(self, state: BalanceState) -> bool:
         """Whether the ball has left the tray."""

@@ -136,7 +136,8 @@ class Plate(Task):
         """From the ball to the plate's centre, velocity and lean, scaled; (6,), float32."""
         x, y = state.ball
         raw = np.array([-x, -y, *state.ball_velocity, *state.lean])
-        return np.clip(raw / _OBSERVATION_SCALES, -OBSERVATION_BOUND, OBSERVATION_BOUND).astype(np.float32)
+        scaled = raw / _OBSERVATION_SCALES
+        return np.minimum(np.maximum(scaled, -OBSERVATION_BOUND), OBSERVATION_BOUND).astype(np.float32)
 
     def failed(self, state: PlateState) -> bool:
         """Whether the ball has left the plate."""
