@@ -53,8 +53,8 @@ class PointMassWorld:
 
     def step(self, torque: np.ndarray) -> None:
         """See World: semi-implicit Euler."""
-        self.effort = self.spec.clamp_torque(torque)
-        pushed = self.effort + self._model.jacobian(self._q)[:3].T @ self._push
+        self.effort = torque
+        pushed = torque + self._model.jacobian(self._q)[:3].T @ self._push
         acceleration = pin.aba(self._model.pin_model, self._data, self._q, self._qd, pushed)
         self._qd = self._qd + acceleration * self.dt
         self._q = self._q + self._qd * self.dt

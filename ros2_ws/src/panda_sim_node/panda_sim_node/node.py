@@ -154,7 +154,7 @@ class PandaSimNode:
         torque = self._await_torque(stop)
         if torque is None:
             return
-        self._world.step(torque)
+        self._world.step(self._world.spec.clamp_torque(torque))
         self._times.add(time.perf_counter() - started)
         self._diagnostics.tick()
         self._tick += 1
@@ -202,7 +202,7 @@ class PandaSimNode:
             self._missed += 1
             self._command_age += 1
         else:
-            self._command = torque
+            self._command = self._world.spec.clamp_torque(torque)
             self._command_age = 0
         if self._command is None or self._command_age > self._timeout_ticks:
             self._world.step_braked()

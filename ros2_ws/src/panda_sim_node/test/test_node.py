@@ -187,6 +187,14 @@ def test_free_running_goes_on_without_torques_on_its_brakes(start_node, observer
     assert int(values['missed_commands']) > 500
 
 
+def test_free_running_keeps_torques_within_the_joints_limits(start_node, observer):
+    states, commands = observer.listen(contract.JOINT_STATES), observer.publisher(contract.EFFORT_COMMANDS)
+    start_node('panda_sim_node', mode='free_running')
+    observer.spin(lambda: states and commands.get_subscription_count() == 1)
+    commands.publish(Float64MultiArray(data=[1e9] * 7))
+    observer.spin(lambda: any(list(m.effort) == [87.0] * 4 + [12.0] * 3 for m in states))
+
+
 def test_free_running_is_controlled(start_node, observer):
     states, commands = observer.listen(contract.JOINT_STATES), observer.listen(contract.EFFORT_COMMANDS)
     start_node('panda_sim_node', mode='free_running')

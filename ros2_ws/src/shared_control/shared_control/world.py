@@ -51,7 +51,10 @@ class World(Protocol):
         """Push the tray's origin with ``force`` ((3,), N) from the next tick on, until called again."""
 
     def step(self, torque: np.ndarray) -> None:
-        """One tick with joint torques ``torque`` ((n,), N m), kept within the joints' limits."""
+        """One tick with joint torques ``torque``, (n,), N m: within the joints' limits, as the controller gives them.
+
+        Whoever takes torques from elsewhere keeps them there (:meth:`RobotSpec.clamp_torque`).
+        """
 
     def step_braked(self) -> None:
         """One tick without a command: the joints' brakes hold them."""

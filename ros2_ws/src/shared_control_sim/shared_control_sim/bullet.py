@@ -139,10 +139,10 @@ class BulletWorld:
         self._push = force if force.any() else None
 
     def step(self, torque: np.ndarray) -> None:
-        """One tick with joint torques ``torque`` ((n,), N m), kept within the joints' limits."""
+        """One tick with joint torques ``torque`` ((n,), N m), which are within the joints' limits."""
         if self._brakes:
             self._release_brakes()
-        self.effort = self.spec.clamp_torque(torque)
+        self.effort = torque
         pybullet.setJointMotorControlArray(
             self.arm, self._joints, pybullet.TORQUE_CONTROL, forces=self.effort.tolist(), physicsClientId=self.client)
         self._advance()

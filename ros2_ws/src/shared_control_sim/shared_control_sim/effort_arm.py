@@ -77,7 +77,7 @@ class EffortPanda:
         if self.mode is Mode.MOVE:
             self._follow(command, q, qd)
         if self.mode is Mode.MOVE:
-            self.world.step(self.torque + self._model.gravity(q))
+            self.world.step(self.world.spec.clamp_torque(self.torque + self._model.gravity(q)))
         else:
             self.world.step_braked()
 

@@ -100,10 +100,10 @@ class MujocoWorld:
             self.data.xfrc_applied[self._tool] = 0.0
 
     def step(self, torque: np.ndarray) -> None:
-        """One tick with joint torques ``torque`` ((n,), N m), kept within the joints' limits."""
+        """One tick with joint torques ``torque`` ((n,), N m), which are within the joints' limits."""
         if self._brakes:
             self._release_brakes()
-        self._applied[:] = self.effort = self.spec.clamp_torque(torque)
+        self._applied[:] = self.effort = torque
         self._advance()
 
     def step_braked(self) -> None:

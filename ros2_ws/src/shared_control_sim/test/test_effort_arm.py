@@ -95,6 +95,17 @@ def test_the_limiter_of_the_rate_approaches_what_is_far_off(world):
     assert robot.torque[5] == 1.5 and robot.limited_ticks == 1
 
 
+def test_with_its_own_weight_it_is_given_no_more_than_its_joints_have(robot, world, model):
+    joint = int(np.abs(model.gravity(panda().home)).argmax())
+    push = np.eye(7)[joint] * np.sign(model.gravity(panda().home)[joint])
+    efforts = []
+    for tick in range(52):
+        robot.tick(tick * push)
+        efforts.append(world.effort)
+    assert robot.mode is Mode.MOVE
+    assert np.abs(efforts).max() == panda().torque_max[joint]
+
+
 def test_silence_ends_the_control(robot):
     robot.tick(STILL)
     for _ in range(100):
