@@ -1,6 +1,5 @@
 """Sessions as a person starts them: real keys in a real pty, and what is said when something is wrong."""
 
-import signal
 import time
 
 import pytest
@@ -72,18 +71,3 @@ def test_a_folder_that_cannot_be_written_is_named(start_session, tmp_path):
     output = session.output()
     assert session.process.returncode == 2
     assert 'cannot write the session folder' in output and 'Traceback' not in output
-
-
-def test_a_corrupt_policy_ends_the_session_and_stays_as_it_is(start_session, unpaced, tmp_path, wait_until):
-    folder = tmp_path / 'session'
-    session = start_session('--tutor', 'sim', '--episodes', 1, '--params-file', unpaced, '--output', folder)
-    wait_until((folder / 'settings.json').exists, 'the settings')
-    session.process.send_signal(signal.SIGINT)
-    session.output()
-    policy = folder / 'learner' / 'policy.safetensors'
-    policy.write_bytes(b'not a policy')
-    session = start_session('--resume', folder)
-    output = session.output()
-    assert session.process.returncode == 1, output
-    assert 'policy.safetensors' in output and 'Traceback' not in output
-    assert policy.read_bytes() == b'not a policy'

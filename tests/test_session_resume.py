@@ -84,3 +84,11 @@ def test_a_session_is_interrupted_resumed_and_reported(start_session, unpaced, t
     check_bag_with_rosbags(second / 'bag_1.mcap', summary['restarts'])  # alone: between the runs time went on
     assert (folder / 'bag' / 'metadata.yaml').is_file()
     assert [finding for finding in summary['bag_checks'] if 'M_y' in finding] == []
+
+    policy = folder / 'learner' / 'policy.safetensors'
+    policy.write_bytes(b'not a policy')
+    session = start_session('--resume', folder, '--episodes', 6)
+    said = session.output()
+    assert session.process.returncode == 1, said
+    assert 'policy.safetensors' in said and 'Traceback' not in said
+    assert policy.read_bytes() == b'not a policy', 'a corrupt policy ends the session and stays as it is'
