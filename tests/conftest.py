@@ -15,6 +15,13 @@ from shared_control_testing.page import served
 from shared_control_testing.terminal import Terminal
 
 BENCHMARKS = Path(__file__).parents[1] / 'benchmarks'
+LONGEST = ('test_session_person.py', 'test_session_resume.py', 'test_session_faults.py')
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the longest of this folder, so that no process is left with one of them in the end."""
+    here = Path(__file__).parent
+    items.sort(key=lambda item: item.path.parent == here and (item.path.name not in LONGEST) + 1)
 
 
 @pytest.fixture(scope='module')

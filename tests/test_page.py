@@ -12,8 +12,6 @@ from shared_control_ros import contract
 from shared_control_testing.page import SIZES, Browser, serve, served
 from shared_control_testing.sessions import MS, START_NS, lesson, message, record
 
-pytestmark = pytest.mark.alone
-
 ROLLED = 60
 """Pixels that no ball at rest moves."""
 TRIANGLES = 'return getElement(teachPage.scene).renderer.info.render.triangles'
@@ -47,6 +45,7 @@ def human(observer):
     return wait_for
 
 
+@pytest.mark.alone
 class TestASessionOnThePage:
     """In this order: practice, teaching, stop."""
 
@@ -212,6 +211,7 @@ BOX = ('const b = document.querySelector("%s").getBoundingClientRect();'
        'return {x: b.left, y: b.top, width: b.width, height: b.height}')
 
 
+@pytest.mark.alone
 class TestASessionByTheKeyboardAlone:
     """In this order, from the practice to the end card and beyond."""
 
@@ -317,7 +317,7 @@ def test_a_recorded_session_plays_on_the_page(replay):
         browser.part('speed').find_element('css selector', '[value="8"]').click()
         browser.wait(lambda: browser.script('return teachPage.picture.replay.speed') == 8, 'the speed')
         browser.type(Keys.SPACE)
-        browser.wait(lambda: browser.text('position') == '0:12 / 0:12', 'the end', timeout=10)
+        browser.wait(lambda: browser.text('position') == '0:12 / 0:12', 'the end')
         assert browser.ball_on_screen() != before
         assert browser.complaints() == []
     finally:

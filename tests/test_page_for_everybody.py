@@ -15,7 +15,6 @@ from teach_page_node import layout
 from teach_page_node.address import free_port
 from teach_page_node.server import STATIC
 
-pytestmark = pytest.mark.alone
 SIDEWAYS = (844, 390)
 ENLARGED = (683, 384)
 """A window of 1366 x 768 at 200 %."""
@@ -36,6 +35,7 @@ def key(name):
     return f'[data-key="{name}"]'
 
 
+@pytest.mark.alone
 class TestASessionByTouch:
     """On a phone held sideways, in this order; what axe-core says of every state."""
 

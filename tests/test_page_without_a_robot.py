@@ -6,8 +6,6 @@ import pytest
 from shared_control_ros import contract
 from shared_control_testing.page import Browser
 
-pytestmark = pytest.mark.alone
-
 ARROW_RIGHT = {'key': 'ArrowRight', 'code': 'ArrowRight', 'windowsVirtualKeyCode': 39}
 
 
