@@ -50,6 +50,14 @@ def test_an_option_has_help_and_shows_its_default(parser, action):
         assert action.metavar and action.metavar.isupper()
 
 
+@pytest.mark.parametrize(('parser', 'action'), [case for case in OPTIONS if case.values[1].type is Path])
+def test_an_empty_path_is_refused(parser, action, capsys):
+    given = [action.option_strings[0], ''] if action.option_strings else ['']
+    with pytest.raises(SystemExit):
+        parser.parse_args(given)
+    assert 'the path is empty' in capsys.readouterr().err
+
+
 @pytest.mark.parametrize('name', PARSERS)
 def test_help_is_plain_text_of_this_product(name):
     text = PARSERS[name].format_help()

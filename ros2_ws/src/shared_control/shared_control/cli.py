@@ -20,6 +20,7 @@ code.
 """
 
 import argparse
+import signal
 import sys
 from importlib.metadata import EntryPoint, entry_points
 
@@ -34,6 +35,9 @@ ORDER = ('session', 'replay', 'report', 'view', 'export', 'recover', 'train', 'e
 
 def main() -> int:
     """Entry point."""
+    for number in (signal.SIGTERM, signal.SIGHUP):  # a scheduler's, a closed terminal's: as Ctrl-C, nothing is lost
+        if signal.getsignal(number) is signal.SIG_DFL:  # not so under nohup
+            signal.signal(number, signal.default_int_handler)
     with lossy_output():
         return _run()
 

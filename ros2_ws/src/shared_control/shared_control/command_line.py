@@ -52,7 +52,7 @@ def make_parser(description: str, examples: Sequence[str], *, prog: str | None =
         prog: its name; that of the program when not given.
     """
     parser = argparse.ArgumentParser(prog=prog, **_texts(description, examples))
-    _add_version(parser)
+    _add_to_every(parser)
     return parser
 
 
@@ -82,7 +82,7 @@ def add_parser(commands: argparse._SubParsersAction, name: str, run: Callable[[a
         examples: whole commands that work.
     """
     parser: argparse.ArgumentParser = commands.add_parser(name, help=summary, **_texts(description, examples))
-    _add_version(parser)
+    _add_to_every(parser)
     parser.set_defaults(run=run)
     return parser
 
@@ -99,13 +99,20 @@ def add_json_option(parser: argparse.ArgumentParser, what: str) -> None:
 
 def _json_file(name: str) -> Path:
     """Where JSON may be written; checked before the work begins."""
-    path = Path(name)
+    path = _path(name)
     if path != TO_THE_OUTPUT:
         try:
             refuse_another_file(path, 'JSON file', b'{')
         except OSError as error:
             raise argparse.ArgumentTypeError(str(error)) from error
     return path
+
+
+def _path(name: str) -> Path:
+    """A path that an option gives: an empty one would be the folder that somebody happens to be in."""
+    if not name:
+        raise argparse.ArgumentTypeError('the path is empty: is the variable set that it comes from?')
+    return Path(name)
 
 
 def prose(json_path: Path | None) -> TextIO:
@@ -139,6 +146,7 @@ def _texts(description: str, examples: Sequence[str]) -> dict[str, Any]:
             'epilog': '\n'.join([EXAMPLES, *(f'  {example}' for example in examples)])}
 
 
-def _add_version(parser: argparse.ArgumentParser) -> None:
+def _add_to_every(parser: argparse.ArgumentParser) -> None:
+    parser.register('type', Path, _path)
     parser.add_argument('--version', action='version', version=version_text('shared-control'),
                         help='print the version and exit')

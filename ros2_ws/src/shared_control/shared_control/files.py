@@ -52,8 +52,24 @@ def write_atomically(path: Path, content: bytes, synced: bool = True) -> None:
         raise
 
 
+def refuse_unwritable(folder: Path) -> None:
+    """Refuse, before work begins, a folder that cannot be written when it is done; it need not exist yet.
+
+    Raises:
+        NotADirectoryError: it, or what it is to be in, is a file.
+        PermissionError: this user may not write there.
+    """
+    there = folder.absolute()
+    while not there.exists() and not there.is_symlink():
+        there = there.parent
+    if not there.is_dir():
+        raise NotADirectoryError(f'cannot write to {folder}: {there} is no folder')
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise PermissionError(f'cannot write to {folder}: this user may not write to {there}')
+
+
 def refuse_another_file(path: Path, kind: str, beginning: bytes) -> None:
-    """Refuse to write ``path`` over a file that is not of the kind that is to be written.
+    """Refuse to write ``path`` over a file that is not of the kind that is to be written, or where nobody may write.
 
     Args:
         path: where something is to be written; nothing need be there.
@@ -62,9 +78,12 @@ def refuse_another_file(path: Path, kind: str, beginning: bytes) -> None:
 
     Raises:
         FileExistsError: there is something else, and it is not empty; the message names it.
-        OSError: it cannot be read.
+        OSError: it cannot be read, or its folder cannot be written.
     """
-    if not path.exists() or path.is_char_device():
+    if path.is_char_device():
+        return
+    refuse_unwritable(path.parent)
+    if not path.exists():
         return
     is_own = path.is_file()
     if is_own:

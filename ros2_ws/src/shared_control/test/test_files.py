@@ -24,7 +24,7 @@ from pathlib import Path
 
 import pytest
 from shared_control.command_line import add_json_option, write_json
-from shared_control.files import lock, write_atomically
+from shared_control.files import lock, refuse_another_file, refuse_unwritable, write_atomically
 
 LATE = """
 import sys, time
@@ -62,6 +62,18 @@ def test_json_is_written_over_nothing_but_json(tmp_path, capsys, there):
     with pytest.raises(SystemExit):
         parser.parse_args(['--json', str(path)])
     assert f'{path} exists already and is no JSON file' in capsys.readouterr().err and path.read_bytes() == there
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_the_work(tmp_path):
+    refuse_unwritable(tmp_path / 'new' / 'newer')
+    (tmp_path / 'notes').touch()
+    (tmp_path / 'dangling').symlink_to(tmp_path / 'nowhere')
+    for folder in (tmp_path / 'notes', tmp_path / 'notes' / 'new', tmp_path / 'dangling'):
+        with pytest.raises(NotADirectoryError, match=f'cannot write to {folder}'):
+            refuse_unwritable(folder)
+        with pytest.raises(NotADirectoryError, match=f'cannot write to {folder}'):
+            refuse_another_file(folder / 'x.json', 'JSON file', b'{')
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['dangling', 'notes']
 
 
 @pytest.mark.parametrize('number', [errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP])

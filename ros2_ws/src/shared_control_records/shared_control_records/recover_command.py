@@ -33,8 +33,9 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 def run(args: argparse.Namespace) -> int:
     """Recover a bag; the exit code."""
     from .bag import recover  # late: `--help` need not wait for what reads bags
-    from .bag.files import find_bag
+    from .bag.files import check_is_bag, find_bag
     bag = find_bag(args.session)
+    check_is_bag(bag)
     recovered = recover(bag)
     for file in recovered:
         print(file)

@@ -172,6 +172,10 @@ def test_an_empty_bag(tmp_path):
 def test_bags_that_cannot_be_read(recording, tmp_path):
     with pytest.raises(BagReadError, match=r'there is no bag .*nowhere'):
         read_bag(tmp_path / 'nowhere')
+    (tmp_path / 'notes.txt').write_text('of yesterday')
+    for other in (tmp_path / 'notes.txt', tmp_path):
+        with pytest.raises(BagReadError, match='is no bag'):
+            read_bag(other)
     path = recording.write(tmp_path / 'bag')
     metadata = (path / 'metadata.yaml').read_bytes()
     (path / 'metadata.yaml').unlink()

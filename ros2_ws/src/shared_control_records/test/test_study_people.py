@@ -288,6 +288,24 @@ def test_a_session_ends_with_its_study(end, tmp_path):
         study.communicate(timeout=60)  # until the last process that has its output is gone
 
 
+def test_a_session_is_waited_for_when_its_study_is_interrupted(tmp_path):
+    session, started, written = tmp_path / 'session', tmp_path / 'started', tmp_path / 'written'
+    session.write_text(f'#!/bin/sh\ntrap "sleep 1; echo > {written}; exit" TERM\necho > {started}\n'
+                       'while :; do sleep 0.1; done\n')
+    session.chmod(0o755)
+    code = ('import sys\nfrom shared_control_records.study import people\n'
+            f'sys.executable = {str(session)!r}\npeople.session([])')
+    with subprocess.Popen([sys.executable, '-c', code], stderr=subprocess.PIPE) as study:
+        while not started.exists():
+            assert study.poll() is None
+            time.sleep(0.02)
+        study.send_signal(signal.SIGINT)
+        time.sleep(0.5)
+        study.send_signal(signal.SIGINT)
+        assert b'KeyboardInterrupt' in study.communicate(timeout=60)[1]
+    assert written.exists()
+
+
 def test_people_are_asked_where_they_teach(study):
     _, plan = study
     people = plan.people.model_copy(update={'teach_on': 'page', 'session_options': []})

@@ -92,6 +92,21 @@ def test_a_study_that_is_killed_goes_on_with_nothing_lost_and_nothing_twice(plan
     assert [row['episode'] for row in load_result(second).episodes] == [1, 2]
 
 
+def test_a_study_that_is_asked_to_leave_says_how_to_go_on(plan, tmp_path):
+    run = StudyFolder(tmp_path / 'study').run(load_plan(plan).jobs[0])
+    command = [sys.executable, '-m', 'shared_control', 'study', str(plan), '--output', str(tmp_path / 'study')]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                          start_new_session=True) as study:
+        try:
+            wait_until(run.exists)
+            study.terminate()  # as a cluster's scheduler does
+            said = study.communicate(timeout=SECONDS)[1]
+        finally:
+            study.kill()
+    assert study.returncode == 130 and 'the same command goes on' in said and 'Traceback' not in said
+    wait_until(lambda: not processes(study.pid))
+
+
 def test_what_is_finished_before_the_disk_is_full_stays_usable(plan, tmp_path, monkeypatch, capfd):
     disk = tmp_path / 'disk'
     disk.mkdir()

@@ -19,6 +19,7 @@ import re
 from pathlib import Path
 from typing import IO
 
+from mcap.writer import MCAP0_MAGIC
 from shared_control import files
 
 _NUMBER = re.compile(r'_(\d+)\.mcap$')
@@ -39,6 +40,25 @@ def find_bag(path: Path) -> Path:
     """
     is_session = (path / 'bag').is_dir() or (path / 'settings.json').is_file()
     return path / 'bag' if is_session and not any(path.glob('*.mcap')) else path
+
+
+def check_is_bag(path: Path) -> None:
+    """Refuse a path where no recorder has written, be it finished or not.
+
+    Raises:
+        BagReadError: nothing is there, or something else.
+        OSError: it cannot be read.
+    """
+    meant = 'name a folder of a session or of ros2 bag, or an MCAP file'
+    if not path.exists():
+        raise BagReadError(f'there is no bag {path}: {meant}')
+    if path.is_dir():
+        is_bag = (path / 'metadata.yaml').is_file() or any(path.glob('*.mcap'))
+    else:
+        with path.open('rb') as file:
+            is_bag = path.suffix == '.mcap' or file.read(len(MCAP0_MAGIC)) == MCAP0_MAGIC
+    if not is_bag:
+        raise BagReadError(f'{path} is no bag: {meant}')
 
 
 def bag_files(bag: Path) -> list[Path]:

@@ -40,7 +40,7 @@ from shared_control.verdict import Verdict
 
 from .chunks import Block, OutOfOrder, read_blocks
 from .fast_decode import BulkTopic, Columns, Row, command_layout, joint_state_layout, odometry_layout, wrench_layout
-from .files import BagReadError
+from .files import BagReadError, check_is_bag
 from .metadata import is_finished
 from .recorded import BallTrack, Commands, JointStates, Judgement, Press, Series, Status, Ticks, Wrenches
 from .task import recorded_task, reported_task
@@ -123,8 +123,7 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
 
 
 def _check_finished(path: Path) -> None:
-    if not path.exists():
-        raise BagReadError(f'there is no bag {path}: name a folder of a session or of ros2 bag, or an MCAP file')
+    check_is_bag(path)
     folder = path if path.is_dir() else path.parent
     torn = [file.name for file in (sorted(path.glob('*.mcap')) if path.is_dir() else [path]) if not is_finished(file)]
     missing = path.is_dir() and not (path / 'metadata.yaml').is_file()

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.command_line import add_json_option, add_parser, prose, write_json
+from shared_control.files import refuse_unwritable
 from shared_control.plugins import TASKS, WORLDS, load, names
 
 TEST_EPISODES = 20
@@ -68,6 +69,8 @@ def run(args: argparse.Namespace) -> int:
     if args.until_known and (args.protocol != 'randomized' or args.test_episodes != TEST_EPISODES or args.output):
         raise ValueError('--until-known answers one question of the randomized test with 20 episodes: '
                          'leave out --protocol, --test-episodes and --output')
+    if args.output:
+        refuse_unwritable(args.output)
     # Imported late: torch and pinocchio take seconds, which `--help` need not wait for.
     from shared_control_learning.evaluation.evaluate import TEST_SEED
 

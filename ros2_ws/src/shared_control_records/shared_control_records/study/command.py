@@ -16,6 +16,7 @@
 
 import argparse
 import os
+import sys
 from pathlib import Path
 
 from shared_control.command_line import add_json_option, add_parser, prose, write_json
@@ -59,6 +60,14 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Do what is left of a study; the exit code."""
+    try:
+        return _run(args)
+    except KeyboardInterrupt:
+        print('stopped; the same command goes on where it was', file=sys.stderr)
+        raise
+
+
+def _run(args: argparse.Namespace) -> int:
     from .folder import StudyFolder
     from .notes import add_note
     from .people import INTERRUPTED, asker_of, lead_through, withdraw

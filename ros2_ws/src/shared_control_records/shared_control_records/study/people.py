@@ -20,6 +20,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from shared_control.processes import leave_with_the_parent
@@ -43,9 +44,21 @@ RunSession = Callable[[list[str]], int]
 
 
 def session(arguments: list[str]) -> int:
-    """Run a session at this terminal; it ends with the study."""
-    return subprocess.run([sys.executable, '-m', 'shared_control', 'session', *arguments], check=False,
-                          preexec_fn=leave_with_the_parent).returncode
+    """Run a session at this terminal; it ends with the study, which waits until all is written."""
+    with subprocess.Popen([sys.executable, '-m', 'shared_control', 'session', *arguments],
+                          preexec_fn=leave_with_the_parent) as process:
+        try:
+            return process.wait()
+        except KeyboardInterrupt:
+            process.terminate()
+            _wait_however_often_asked(process)
+            raise
+
+
+def _wait_however_often_asked(process: subprocess.Popen) -> None:
+    while process.returncode is None:
+        with suppress(KeyboardInterrupt):
+            process.wait()
 
 
 def asker_of(people: People) -> Asker:

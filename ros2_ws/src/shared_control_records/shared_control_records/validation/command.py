@@ -18,6 +18,7 @@ import argparse
 from pathlib import Path
 
 from shared_control.command_line import add_json_option, add_parser, prose, write_json
+from shared_control.files import refuse_unwritable
 
 
 def add_command(commands: argparse._SubParsersAction) -> None:
@@ -42,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from ..plotting.plot import origin, write_captions
     from .figures import plots
     from .run import validate
+    refuse_unwritable(args.output)
     args.output.mkdir(parents=True, exist_ok=True)
     validation = validate()
     print(validation.table(), file=prose(args.json))

@@ -1,0 +1,28 @@
+"""A command that is asked to leave, by whatever signal, ends as by Ctrl-C and says how to go on."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from shared_control_learning.episode_table import TABLE_NAME, read_rows
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_training(number, tmp_path):
+    folder = tmp_path / 'run'
+    training = subprocess.Popen([sys.executable, '-m', 'shared_control', 'train', '--output', str(folder)],
+                                stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    try:
+        deadline = time.monotonic() + 120.0
+        while not (folder / TABLE_NAME).is_file() or not read_rows(folder / TABLE_NAME):
+            assert training.poll() is None and time.monotonic() < deadline
+            time.sleep(0.05)
+        training.send_signal(number)
+        said = training.communicate(timeout=120.0)[1]
+    finally:
+        training.kill()
+    assert training.returncode == 130
+    assert f'stopped; go on with: shared-control train --resume {folder}' in said
+    assert 'leaked' not in said and 'Traceback' not in said
