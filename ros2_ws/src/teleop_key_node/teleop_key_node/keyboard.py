@@ -116,7 +116,7 @@ class HeldKeys:
     """Between two repetitions, s: 10 a second on a Linux console, 30 elsewhere. Nobody presses one key so quickly."""
 
     def __init__(self, period: float) -> None:
-        self._longest = 2.0 * period  # what came while nobody looked may have come all the time
+        self._longest = 2.0 * period
         self._silent: dict[Stroke, float] = {}
         self._looked_at = 0.0
 
@@ -127,9 +127,12 @@ class HeldKeys:
 
     def update(self, strokes: Iterable[Stroke], now: float) -> list[Stroke]:
         """The keys that went down, given the strokes since the last call and the time, s."""
-        elapsed = min(now - self._looked_at, self._longest)
+        strokes = list(strokes)
+        elapsed = now - self._looked_at
         self._looked_at = now
-        self._silent = {stroke: silent + elapsed for stroke, silent in self._silent.items()}
+        # What did not come was silent all the time; what came may have come all the time, if nobody looked for long.
+        self._silent = {stroke: silent + (0.0 if stroke in strokes and elapsed > self._longest else elapsed)
+                        for stroke, silent in self._silent.items()}
         pressed = []
         for stroke in strokes:
             if self._silent.get(stroke, self.REPEATS_WITHIN) >= self.REPEATS_WITHIN:
