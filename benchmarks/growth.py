@@ -122,13 +122,12 @@ def read_joints(readers: int, seconds: float) -> Cost:
     The others read as a recorder does, each a process, which the kernel places.
     """
     import graph
-    from shared_control_ros.processes import leave_with_the_parent, node_environment
+    from shared_control_ros.processes import leave_with_the_parent
     with ExitStack() as stack:
         domain, simulator = stack.enter_context(graph.loop())
         for _ in range(readers - 1):
             other = stack.enter_context(subprocess.Popen(
-                [sys.executable, '-c', READER], env={**node_environment(), 'ROS_DOMAIN_ID': str(domain)},
-                preexec_fn=leave_with_the_parent))
+                [sys.executable, '-c', READER], preexec_fn=leave_with_the_parent))
             stack.callback(other.kill)
         first, before, before_mb = graph.last_report(domain, 0.0, readers), cpu_seconds(simulator), _peak_mb(simulator)
         last = graph.last_report(domain, float(first['running_seconds']) + seconds)

@@ -14,7 +14,6 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
-import graph
 import numpy as np
 import rclpy
 from rclpy.context import Context
@@ -26,6 +25,7 @@ from shared_control_bringup.node_process import NodeProcess
 from shared_control_bringup.settings import Settings
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
+from shared_control_testing.nodes import free_domain
 from shared_control_testing.page import Browser
 from teach_page_node.address import free_port, page_address
 
@@ -39,10 +39,9 @@ _COUNTS = 'return [teachPage.pictures, getElement(teachPage.scene).renderer.info
 
 
 @contextmanager
-def session(domain: int) -> Iterator[str]:
-    """The nodes of a session that practises; the page's address."""
-    os.environ['ROS_DOMAIN_ID'] = str(domain)
-    with tempfile.TemporaryDirectory() as folder:
+def session() -> Iterator[tuple[int, str]]:
+    """The nodes of a session that practises; their domain, and the page's address."""
+    with free_domain() as domain, tempfile.TemporaryDirectory() as folder:
         settings = Settings(tutor='page', page=('127.0.0.1', free_port('127.0.0.1')))
         file = Path(folder) / 'parameters.yaml'
         given = overrides(settings, Path(folder), shows_screen=False)
@@ -54,7 +53,7 @@ def session(domain: int) -> Iterator[str]:
             for node in nodes:
                 node.start()
                 node.wait_ready(60.0)
-            yield page_address(*settings.page, token=None)
+            yield domain, page_address(*settings.page, token=None)
         finally:
             for node in reversed(nodes):
                 node.interrupt()
@@ -126,8 +125,7 @@ def measure() -> dict[str, Any]:
 
     Without a browser, the real-time factor without it, and under ``missing`` what is needed for the rest.
     """
-    domain = next(graph.DOMAINS)
-    with session(domain) as address, closing(Ear(domain)) as ear:
+    with session() as (domain, address), closing(Ear(domain)) as ear:
         time.sleep(3.0)
         without = ear.real_time_factor(SECONDS)
         figures = {'real_time_factor': {'without_page': round(without, 4)},

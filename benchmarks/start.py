@@ -5,7 +5,6 @@ in its log; the first tick is the first stamp on /joint_states_throttle that fol
 phase ``teach``.
 """
 
-import os
 import re
 import resource
 import signal
@@ -21,7 +20,6 @@ from typing import Any
 ROUNDS = 3
 GIVEN_UP_AFTER = 180.0
 """s"""
-DOMAINS = iter(range(60, 80))
 _READY = re.compile(r'^\[INFO\] \[([\d.]+)\] \[[^\]]*\]: ready$', re.MULTILINE)
 FOLDER = Path(sys.executable).parent
 
@@ -46,17 +44,16 @@ def _cpu(command: list[str]) -> float:
 
 def session_s() -> dict[str, float]:
     """Seconds from the command to each node's readiness, to the first tick and to the first episode."""
-    from shared_control_ros.processes import leave_with_the_parent, node_environment
-    domain = next(DOMAINS)
-    with tempfile.TemporaryDirectory() as folder:
+    from shared_control_ros.processes import leave_with_the_parent
+    from shared_control_testing.nodes import free_domain
+    with tempfile.TemporaryDirectory() as folder, free_domain() as domain:
         session = Path(folder) / 'session'
         with _Graph(domain) as graph:
             began, clock = time.monotonic(), time.time()
             process = subprocess.Popen(
                 [str(FOLDER / 'shared-control'), 'session', '--tutor', 'sim', '--no-screen', '--episodes', '1',
                  '--test-episodes', '0', '--output', str(session)],
-                env={**node_environment(), 'ROS_DOMAIN_ID': str(domain)}, stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL, preexec_fn=leave_with_the_parent)
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, preexec_fn=leave_with_the_parent)
             try:
                 found = graph.first_tick_and_episode(began)
             finally:
@@ -77,8 +74,6 @@ class _Graph:
         from rclpy.node import Node
         from shared_control_ros import contract
         from shared_control_ros.fast_loop import Polled
-        from shared_control_ros.processes import node_environment
-        os.environ.update(node_environment())
         self._context = Context()
         rclpy.init(context=self._context, domain_id=domain)
         self._node = Node('bench', context=self._context)

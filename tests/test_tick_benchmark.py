@@ -12,7 +12,7 @@ SCRIPT = Path(__file__).parents[1] / 'benchmarks' / 'tick.py'
 
 @pytest.fixture(scope='module')
 def figures():
-    said = subprocess.run([sys.executable, SCRIPT], check=True, capture_output=True, text=True, timeout=300).stdout
+    said = subprocess.run([sys.executable, SCRIPT], check=True, stdout=subprocess.PIPE, text=True, timeout=600).stdout
     return json.loads(said)
 
 
