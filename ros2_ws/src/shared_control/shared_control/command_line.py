@@ -147,6 +147,6 @@ def _texts(description: str, examples: Sequence[str]) -> dict[str, Any]:
 
 
 def _add_to_every(parser: argparse.ArgumentParser) -> None:
-    parser.register('type', Path, _path)
+    parser.register('type', Path, _path)  # for every option with `type=Path`
     parser.add_argument('--version', action='version', version=version_text('shared-control'),
                         help='print the version and exit')
