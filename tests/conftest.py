@@ -15,7 +15,7 @@ from shared_control_testing.page import served
 from shared_control_testing.terminal import Terminal
 
 BENCHMARKS = Path(__file__).parents[1] / 'benchmarks'
-LONGEST = ('test_session_person.py', 'test_study_on_the_page.py', 'test_session_resume.py', 'test_session_faults.py')
+LONGEST = ('test_session_person.py', 'test_session_resume.py', 'test_session_faults.py')
 
 
 def pytest_collection_modifyitems(items):

@@ -14,6 +14,7 @@ from shared_control_ros.processes import leave_with_the_parent
 from shared_control_testing.page import SIZES, Browser
 from teach_page_node.address import free_port
 
+pytestmark = pytest.mark.alone
 PLAN = """
 participants:
   real: 2

@@ -165,7 +165,9 @@ def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, 
     try:
         if end is not End.FAILED:
             describe_policy(folder)
-        if end is End.DONE and settings.test_episodes:
+        if not folder.policy.exists():
+            print('No episode was learned: there is no policy.', flush=True)
+        elif end is End.DONE and settings.test_episodes:
             try:
                 test_policy(folder, settings.test_episodes, settings.physics, interrupts.check)
             except KeyboardInterrupt:

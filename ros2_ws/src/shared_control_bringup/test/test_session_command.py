@@ -20,10 +20,13 @@ import pytest
 import yaml
 from shared_control.cli import main
 from shared_control_bringup import session as command
+from shared_control_bringup.interrupts import Interrupts
 from shared_control_bringup.parameters import DEFAULTS, load
+from shared_control_bringup.settings import Settings
 from shared_control_bringup.teaching import End
 from shared_control_records.session.final_test import sha256
 from shared_control_records.session.folder import SessionFolder
+from shared_control_testing.sessions import lesson, record
 
 
 class NoNeighbours:
@@ -207,6 +210,15 @@ def test_a_session_that_is_taught_goes_on_with_its_test_alone(session, tmp_path,
     assert session.taught == 3
     assert session('--resume', folder.path, '--episodes', 50) == 0
     assert session.taught == 4
+
+
+def test_a_session_in_which_nothing_was_learned_has_a_report(tmp_path, capsys):
+    folder = SessionFolder(tmp_path / 'session')
+    record([lesson()]).write(folder.bag)
+    folder.write_settings((settings := Settings(tutor='sim', test_episodes=20)).to_json())
+    assert command._report(folder, End.DONE, 0, settings, Interrupts()) is End.DONE
+    assert 'No episode was learned' in capsys.readouterr().out
+    assert folder.report.exists() and not folder.test.exists()
 
 
 def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):
