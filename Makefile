@@ -54,7 +54,7 @@ session: setup
 
 test: setup
 	@failed=0; \
-	$(BIN)/python -m pytest -m 'not alone' --numprocesses 3 --dist loadscope --no-loadscope-reorder || failed=1; \
+	$(BIN)/python -m pytest -m 'not alone' --numprocesses 2 --dist loadscope --no-loadscope-reorder || failed=1; \
 	$(BIN)/python -m pytest -m alone || failed=1; \
 	exit $$failed
 
