@@ -3,23 +3,24 @@
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 from shared_control_learning.episode_table import TABLE_NAME, read_rows
 
 
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
-def test_a_training(number, tmp_path):
+def test_a_training(number, tmp_path, wait_until):
     folder = tmp_path / 'run'
     training = subprocess.Popen([sys.executable, '-m', 'shared_control', 'train', '--evaluate-every', '0',
                                  '--episodes', '1000', '--output', str(folder)], stderr=subprocess.PIPE,
                                 stdout=subprocess.DEVNULL, text=True)
+
+    def has_taught():
+        assert training.poll() is None
+        return read_rows(folder / TABLE_NAME)
+
     try:
-        deadline = time.monotonic() + 120.0
-        while not (folder / TABLE_NAME).is_file() or not read_rows(folder / TABLE_NAME):
-            assert training.poll() is None and time.monotonic() < deadline
-            time.sleep(0.05)
+        wait_until(has_taught, 'the first episode')
         training.send_signal(number)
         said = training.communicate(timeout=120.0)[1]
     finally:

@@ -19,6 +19,7 @@ from typing import Any, Protocol
 import gymnasium
 import numpy as np
 
+from .bounds import bounded
 from .plant import Plant, PlantState
 from .rates import POLICY_PERIOD
 from .robot.model import RobotModel
@@ -88,8 +89,7 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """
         if not np.isfinite(action).all():
             raise ValueError(f'the action {action} is not finite')
-        action = np.minimum(np.maximum(action, -1.0), 1.0)  # a quarter of np.clip's time
-        plant_state = self.plant.advance(action.astype(float) * self._scale)
+        plant_state = self.plant.advance(bounded(action, 1.0).astype(float) * self._scale)
         self._step += 1
         state = self.task.describe(plant_state, self._model)
         terms = self.task.reward_terms(state)

@@ -20,6 +20,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import torch
+from shared_control.bounds import bounded
 from shared_control.env import action_space, observation_space
 from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task
@@ -97,8 +98,7 @@ class PpoLearner:
 
     def act(self, observation: np.ndarray) -> np.ndarray:
         """See :class:`Learner`."""
-        means = _means(self._detached, torch.from_numpy(observation)).numpy()
-        return np.minimum(np.maximum(means, -1.0), 1.0)
+        return bounded(_means(self._detached, torch.from_numpy(observation)).numpy(), 1.0)
 
     def means(self, observations: torch.Tensor) -> torch.Tensor:
         """Means of the Gaussian policy, not clipped; (..., n) -> (..., k)."""

@@ -26,6 +26,7 @@ import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -273,32 +274,32 @@ def test_other_pages_may_not_speak_to_the_form(asked):
     answer()
 
 
-@pytest.mark.parametrize('end', [signal.SIGTERM, signal.SIGKILL])
-def test_a_session_ends_with_its_study(end, tmp_path):
-    session, started = tmp_path / 'session', tmp_path / 'started'
-    session.write_text(f'#!/bin/sh\necho > {started}\nexec sleep 600\n')
-    session.chmod(0o755)
+@contextmanager
+def study_in_a_session(folder, session, **pipes):
+    """A process that is in a session, which is the shell script ``session``, and has got as far as to write a file."""
+    script, started = folder / 'session', folder / 'started'
+    script.write_text('#!/bin/sh\n' + session.replace('STARTED', f'echo > {started}'))
+    script.chmod(0o755)
     code = ('import sys\nfrom shared_control_records.study import people\n'
-            f'sys.executable = {str(session)!r}\npeople.session([])')
-    with subprocess.Popen([sys.executable, '-c', code], stdout=subprocess.PIPE) as study:
+            f'sys.executable = {str(script)!r}\npeople.session([])')
+    with subprocess.Popen([sys.executable, '-c', code], **pipes) as study:
         while not started.exists():
             assert study.poll() is None
             time.sleep(0.02)
+        yield study
+
+
+@pytest.mark.parametrize('end', [signal.SIGTERM, signal.SIGKILL])
+def test_a_session_ends_with_its_study(end, tmp_path):
+    with study_in_a_session(tmp_path, 'STARTED\nexec sleep 600\n', stdout=subprocess.PIPE) as study:
         study.send_signal(end)
         study.communicate(timeout=60)  # until the last process that has its output is gone
 
 
 def test_a_session_is_waited_for_when_its_study_is_interrupted(tmp_path):
-    session, started, written = tmp_path / 'session', tmp_path / 'started', tmp_path / 'written'
-    session.write_text(f'#!/bin/sh\ntrap "sleep 1; echo > {written}; exit" TERM\necho > {started}\n'
-                       'while :; do sleep 0.1; done\n')
-    session.chmod(0o755)
-    code = ('import sys\nfrom shared_control_records.study import people\n'
-            f'sys.executable = {str(session)!r}\npeople.session([])')
-    with subprocess.Popen([sys.executable, '-c', code], stderr=subprocess.PIPE) as study:
-        while not started.exists():
-            assert study.poll() is None
-            time.sleep(0.02)
+    written = tmp_path / 'written'
+    session = f'trap "sleep 1; echo > {written}; exit" TERM\nSTARTED\nwhile :; do sleep 0.1; done\n'
+    with study_in_a_session(tmp_path, session, stderr=subprocess.PIPE) as study:
         study.send_signal(signal.SIGINT)
         time.sleep(0.5)
         study.send_signal(signal.SIGINT)

@@ -184,12 +184,13 @@ class Observer:
         """A publisher on a topic of the contract."""
         return self.node.create_publisher(topic.msg_type, topic.name, topic.qos)
 
-    def spin(self, until: Callable[[], Any], timeout: float = 60.0, what: str = '') -> None:
-        """Serve callbacks until ``until()`` is true; fail after ``timeout`` seconds."""
+    def spin(self, until: Callable[[], Any], timeout: float = 60.0, what: str = '') -> Any:
+        """Serve callbacks until ``until()`` is true, and give its value; fail after ``timeout`` seconds."""
         deadline = time.monotonic() + timeout
-        while not until():
+        while not (value := until()):
             assert time.monotonic() < deadline, f'waited {timeout} s in vain{": " + what if what else ""}'
             self._serve(0.01)
+        return value
 
     def spin_for(self, seconds: float) -> None:
         """Serve callbacks for so long."""
@@ -220,8 +221,7 @@ class Observer:
                 futures.append(client.call_async(request))
             return next((future for future in futures if future.done()), None)
 
-        self.spin(answered, timeout, f'response of {name}')
-        response = next(future for future in futures if future.done()).result()
+        response = self.spin(answered, timeout, f'response of {name}').result()
         self.node.destroy_client(client)
         return response
 

@@ -16,6 +16,8 @@
 
 import numpy as np
 
+from ..bounds import bounded
+
 FADE_TIME = 0.1
 """How long the moment of a silent source takes to fade to nothing, s."""
 
@@ -34,7 +36,7 @@ def freshness(age: float, timeout: float) -> float:
 
 def sum_moments(agent: np.ndarray, human: np.ndarray, limit: np.ndarray) -> np.ndarray:
     """The sum of both moments (3.3), each axis kept within ``limit``; all (k,), N m."""
-    return np.minimum(np.maximum(agent + human, -limit), limit)
+    return bounded(agent + human, limit)
 
 
 class MomentSource:

@@ -20,6 +20,7 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
+from ..bounds import bounded
 from ..keys import KeyMap
 from ..plant import PlantState
 from ..rates import POLICY_PERIOD
@@ -178,7 +179,7 @@ class Observer:
 
 def integrated(integral: np.ndarray, errors: np.ndarray, seconds: float) -> np.ndarray:
     """``integral`` after ``errors`` (both as observed) have lasted ``seconds`` s."""
-    return np.minimum(np.maximum(integral + seconds * errors, -INTEGRAL_BOUND), INTEGRAL_BOUND)
+    return bounded(integral + seconds * errors, INTEGRAL_BOUND)
 
 
 class BallStarts:

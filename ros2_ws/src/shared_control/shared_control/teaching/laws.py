@@ -23,8 +23,8 @@ from typing import Protocol
 
 import numpy as np
 
+from ..bounds import bounded
 from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE
-from .person import bounded
 from .picture import Picture
 from .tutor import BALL_ACCELERATION, TILT_OF_MOMENT, TILT_WANTED_MAX
 

@@ -98,11 +98,6 @@ class SimulatedPerson(ABC):
         """
 
 
-def bounded(values: np.ndarray, limit: float) -> np.ndarray:
-    """``values`` within ``limit``."""
-    return np.minimum(np.maximum(values, -limit), limit)
-
-
 def in_keystrokes(moment: np.ndarray, at_least: int = 0) -> np.ndarray:
     """``moment``, (k,), N m, in whole keystrokes that can be held, ``at_least`` so many about every axis."""
     strokes = np.maximum(np.rint(np.abs(moment) / KEYSTROKE), at_least)

@@ -18,11 +18,11 @@ import math
 
 import numpy as np
 
+from ..bounds import bounded
 from ..keys import HUMAN_MOMENT_LIMIT
 from ..plant import PlantState
 from ..rates import POLICY_PERIOD
 from .individual_tutor import IndividualTutor
-from .person import bounded
 
 HAND_SECONDS = 0.1
 """How late the hand follows what is wanted: the neuromuscular lag (McRuer and Jex, 1967), s."""

@@ -19,10 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..bounds import bounded
 from ..keys import Key
 from ..tasks.balance import BALANCE
 from ..tasks.task import Task
-from .person import ROUNDING, SimulatedPerson, bounded, in_keystrokes, key_towards
+from .person import ROUNDING, SimulatedPerson, in_keystrokes, key_towards
 from .picture import Picture
 from .profiles import TutorProfile, in_episode
 

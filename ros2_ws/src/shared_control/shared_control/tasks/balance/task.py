@@ -20,6 +20,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...bounds import bounded
 from ...keys import LEFT_AND_RIGHT, KeyMap
 from ...plant import PlantState
 from ...robot.model import RobotModel, pitch
@@ -148,7 +149,7 @@ class Balance(Task):
             scaled = (raw - low) / (high - low) if high > low else np.zeros(3)
         else:
             scaled = raw / self.observation_scales
-        return np.minimum(np.maximum(scaled, -OBSERVATION_BOUND), OBSERVATION_BOUND).astype(np.float32)
+        return bounded(scaled, OBSERVATION_BOUND).astype(np.float32)
 
     def failed(self, state: BalanceState) -> bool:
         """Whether the ball has left the tray."""

@@ -20,6 +20,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...bounds import bounded
 from ...keys import Key, KeyMap
 from ...plant import PlantState
 from ...robot.model import RobotModel
@@ -136,8 +137,7 @@ class Plate(Task):
         """From the ball to the plate's centre, velocity and lean, scaled; (6,), float32."""
         x, y = state.ball
         raw = np.array([-x, -y, *state.ball_velocity, *state.lean])
-        scaled = raw / _OBSERVATION_SCALES
-        return np.minimum(np.maximum(scaled, -OBSERVATION_BOUND), OBSERVATION_BOUND).astype(np.float32)
+        return bounded(raw / _OBSERVATION_SCALES, OBSERVATION_BOUND).astype(np.float32)
 
     def failed(self, state: PlateState) -> bool:
         """Whether the ball has left the plate."""
