@@ -100,12 +100,13 @@ class RunningNode:
             self.process.wait()
             raise
 
-    def wait_for_log(self, text: str, timeout: float = 60.0) -> None:
-        """Wait until it has printed ``text``."""
+    def wait_for_log(self, text: str, timeout: float = 60.0, beside: Callable[[], Any] = lambda: None) -> None:
+        """Wait until it has printed ``text``; ``beside()`` is called again and again until then."""
         deadline = time.monotonic() + timeout
         while text not in self.log():
             assert time.monotonic() < deadline, f'{text!r} is not in the log:\n{self.log()}'
             assert self.process.poll() is None or text in self.log(), f'it ended without {text!r}:\n{self.log()}'
+            beside()
             time.sleep(0.05)
 
 

@@ -67,6 +67,13 @@ class Robot:
                 return
         pytest.fail('torques do not end')
 
+    def run_until_refused(self, node):
+        """Far from the reference; also the sign that the controller hears the robot."""
+        def run():
+            assert self.run(off=0.5) == []
+
+        node.wait_for_log('not enabled yet: panda_joint1 is 0.50 rad off the reference', beside=run)
+
     def ask(self, name, kind=Trigger, **request):
         return self.observer.call(kind, name, kind.Request(**request), beside=self.tick)
 
@@ -106,14 +113,12 @@ def test_an_emergency_stop_outlives_the_controller(start_node, robot, end):
 
 def test_enables_itself_only_near_the_reference(start_node, robot):
     node = start(start_node)
-    assert robot.run(off=0.5) == []
-    node.wait_for_log('not enabled yet: panda_joint1 is 0.50 rad off the reference')
+    robot.run_until_refused(node)
     robot.run_until_answered(off=0.1)
 
 
 def test_does_not_enable_itself_after_it_was_disabled(start_node, robot):
-    start(start_node)
-    robot.run(off=0.5)
+    robot.run_until_refused(start(start_node))
     assert robot.ask(contract.ENABLE_SERVICE, SetBool, data=False).success
     assert robot.run(off=0.0) == []
 
