@@ -8,7 +8,11 @@ import sys
 from contextlib import suppress
 
 import pytest
-from selenium.common.exceptions import ElementNotInteractableException, WebDriverException
+from selenium.common.exceptions import (
+    ElementClickInterceptedException,
+    ElementNotInteractableException,
+    WebDriverException,
+)
 from selenium.webdriver.common.keys import Keys
 from shared_control_ros.processes import leave_with_the_parent
 from shared_control_testing.page import SIZES, Browser
@@ -55,9 +59,9 @@ class Participant:
         self._browser.wait(lambda: (self.reads() or '').startswith(title), title, 400)
 
     def ends_the_teaching(self):
-        """Whether it ends; click what leads there, if it is there: these episodes are short."""
+        """Whether it ends; click what leads there, if it is there: the rests between these episodes are short."""
         for button in ('yes', 'finish'):
-            with suppress(ElementNotInteractableException):
+            with suppress(ElementNotInteractableException, ElementClickInterceptedException):  # it is gone
                 self._browser.part(button).click()
         return self._browser.script('return teachPage.picture.ends_teaching || teachPage.picture.phase === "test"') or (
             self._browser.part('close').is_displayed())
