@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Stable-Baselines3's PPO with one more term in its loss."""
+"""Stable-Baselines3's PPO with one more term in its loss, and a learning rate that falls within an update."""
 
 from collections.abc import Callable
 
@@ -36,17 +36,23 @@ class ExtraLossPPO(PPO):
     """PPO that adds ``extra_loss()`` to the loss of every minibatch; without one it is Stable-Baselines3's."""
 
     extra_loss: Callable[[], torch.Tensor] | None = None
+    rate_end: float = 1.0
+    """What part of the learning rate is left after the last epoch; it falls linearly, epoch by epoch."""
 
     def train(self) -> None:
         """PPO's epochs over the rollout buffer."""
-        if self.extra_loss is None:
+        if self.extra_loss is None and self.rate_end == 1.0:
             super().train()
             return
         self.policy.set_training_mode(True)
-        self._update_learning_rate(self.policy.optimizer)
-        for _ in range(self.n_epochs):
+        for left in np.linspace(1.0, self.rate_end, self.n_epochs, endpoint=False):
+            self._update_learning_rate(self.policy.optimizer)
+            for group in self.policy.optimizer.param_groups:
+                group['lr'] *= left
             for batch in self.rollout_buffer.get(self.batch_size):
-                loss = self._loss(batch) + self.extra_loss()
+                loss = self._loss(batch)
+                if self.extra_loss is not None:
+                    loss = loss + self.extra_loss()
                 self.policy.optimizer.zero_grad()
                 loss.backward()
                 torch.nn.utils.clip_grad_norm_(self.policy.parameters(), self.max_grad_norm)

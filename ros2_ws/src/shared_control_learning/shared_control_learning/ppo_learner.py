@@ -66,6 +66,7 @@ class PpoLearner:
                 max_grad_norm=ppo.max_gradient_norm, device='cpu',
                 policy_kwargs={'net_arch': {'pi': list(ppo.hidden), 'vf': list(ppo.value_hidden)},
                                'log_std_init': float(np.log(ppo.initial_std))})
+        self._ppo.rate_end = ppo.learning_rate_end
         self._ppo.set_logger(Logger(None, []))
         self.policy = self._ppo.policy
         self.policy.log_std.requires_grad_(ppo.std_decay is None)

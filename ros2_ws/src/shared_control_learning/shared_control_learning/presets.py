@@ -76,7 +76,7 @@ COACHED = PpoPreset('coached', BALANCE, PpoLearnerSettings(
 """Corrections are labels, too."""
 COACHED_NETWORK = PpoPreset('coached_network', BALANCE, PpoLearnerSettings(
     PpoSettings(hidden=(32, 32), initial_std=0.3, std_decay=0.93, learning_rate=1e-2, learning_rate_decay=0.95,
-                epochs=40, max_gradient_norm=5.0),
+                learning_rate_end=0.0, epochs=40, max_gradient_norm=5.0),
     CoachingSettings(delays=(0.2, 0.3, 0.4, 0.5), memory_episodes=8, weight=100.0, fade_episodes=100)))
 """Corrections are labels of a network, which they teach more than the reward does: for what no linear law can do."""
 THESIS_PPO = PpoPreset('thesis', THESIS, PpoLearnerSettings(PpoSettings(

@@ -51,6 +51,8 @@ class PpoSettings:
     """What the learning rate is multiplied by after each episode."""
     learning_rate_min: Positive = 1e-3
     """The least learning rate that a decay leads to."""
+    learning_rate_end: Fraction = 1.0
+    """What part of the learning rate is left after an update; it falls linearly, epoch by epoch."""
     epochs: Annotated[int, Field(ge=1, le=1000)] = 10
     batch_size: Annotated[int, Field(ge=2, le=100_000)] = 125
     gamma: Fraction = 0.99

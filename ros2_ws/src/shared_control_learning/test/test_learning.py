@@ -27,7 +27,7 @@ from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.corrections import find_corrections
 from shared_control_learning.episode import Episode
 from shared_control_learning.learn import learn
-from shared_control_learning.presets import AUTONOMOUS, COACHED, preset
+from shared_control_learning.presets import AUTONOMOUS, COACHED, COACHED_NETWORK, preset
 from shared_control_learning.settings import CoachingSettings
 from shared_control_testing.rolling import rolling
 
@@ -149,6 +149,21 @@ def test_own_loss_is_that_of_stable_baselines(monkeypatch):
         learner.begin()
         learner.learn_from(make_episode(learner, human=[5.0] * 130))
     assert torch.allclose(weights(coached), weights(plain), atol=1e-6)
+
+
+@pytest.mark.parametrize('human', [0.0, 5.0])
+def test_the_learning_rate_falls_within_an_update(monkeypatch, human):
+    learner = COACHED_NETWORK.make()
+    optimizer, rates = learner.policy.optimizer, []
+    step = optimizer.step
+    monkeypatch.setattr(optimizer, 'step', lambda: (rates.append(optimizer.param_groups[0]['lr']), step()))
+    for number in range(2):
+        rates.clear()
+        learner.learn_from(make_episode(learner, human=[human] * 130))
+        settings = learner.settings.ppo
+        assert rates[0] == settings.learning_rate_in(number + 1)
+        assert rates[-1] == pytest.approx(rates[0] / settings.epochs)
+        assert rates == sorted(rates, reverse=True)
 
 
 def test_corrections_move_the_policy_to_their_side():
