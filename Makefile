@@ -118,7 +118,8 @@ freeze: setup
 
 flaky: setup
 	@for run in $$(seq $(RUNS)); do echo "run $$run of $(RUNS)"; \
-	    $(BIN)/python -m pytest -q --maxfail=1 @tests/failed_by_chance.txt || exit 1; done
+	    $(BIN)/python -m pytest -q -m 'not alone' --maxfail=1 --numprocesses 2 --dist loadscope @tests/failed_by_chance.txt || exit 1; \
+	    $(BIN)/python -m pytest -q -m alone --maxfail=1 @tests/failed_by_chance.txt || exit 1; done
 
 colcon: setup
 	PYTHON=$(BIN)/python tools/colcon.sh $(ARGS)
