@@ -48,25 +48,27 @@ def ping_pong(*options: str) -> dict[str, float]:
     return json.loads(output.splitlines()[-1])
 
 
-def ticks(seconds: float = SECONDS) -> dict[str, float]:
-    """p50 and p99 of the graph's tick, ms, as the simulator reports them after ``seconds``."""
-    with loop() as (domain, _):
-        values = last_report(domain, seconds)
+def ticks(task: str) -> dict[str, float]:
+    """p50 and p99 of the graph's tick, ms, as the simulator reports them after some seconds of a task."""
+    with loop(task=task) as (domain, _):
+        values = last_report(domain, SECONDS)
     return {'p50': float(values['tick_p50_ms']), 'p99': float(values['tick_p99_ms'])}
 
 
 @contextmanager
-def loop(python: dict[str, list[str]] | None = None) -> Iterator[tuple[int, int]]:
+def loop(python: dict[str, list[str]] | None = None, task: str = 'balance') -> Iterator[tuple[int, int]]:
     """The nodes of the loop, on its core; gives their domain, and the process of the first, the simulator.
 
     Args:
         python: what Python is called with for each; as they are installed when not given.
+        task: of both.
     """
     python = python or {name: ['-m', node_module(name)] for name in LOOP}
     with free_domain() as domain:
-        nodes = [subprocess.Popen([sys.executable, *python[name], '--ros-args', '-p', *parameters],
-                                  stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, preexec_fn=to_the_loops_core)
-                 for name, parameters in LOOP.items()]
+        nodes = [subprocess.Popen(
+            [sys.executable, *python[name], '--ros-args', '-p', f'task:={task}', '-p', *parameters],
+            stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, preexec_fn=to_the_loops_core)
+            for name, parameters in LOOP.items()]
         try:
             yield domain, nodes[0].pid
         finally:
@@ -105,18 +107,21 @@ def last_report(domain: int, seconds: float, readers: int = 1) -> dict[str, Any]
 
 def measure() -> dict[str, Any]:
     """``tick_ms``, ``pingpong_ms`` and their ``ratio``, medians over the rounds, with the rounds themselves; the same
-    for the exchange of bytes made beforehand (``raw``), which is what the nodes of the loop do."""
+    for the exchange of bytes made beforehand (``raw``), which is what the nodes of the loop do, and for a tick with two
+    axes (``plate``)."""
     rounds = []
     for _ in range(ROUNDS):
-        bare, raw, tick = ping_pong(), ping_pong('--raw'), ticks()
-        rounds.append({'pingpong_ms': bare, 'pingpong_raw_ms': raw, 'tick_ms': tick,
-                       'ratio': round(tick['p50'] / bare['p50'], 3), 'ratio_raw': round(tick['p50'] / raw['p50'], 3)})
+        bare, raw, tick, plate = ping_pong(), ping_pong('--raw'), ticks('balance'), ticks('plate')
+        rounds.append({'pingpong_ms': bare, 'pingpong_raw_ms': raw, 'tick_ms': tick, 'tick_plate_ms': plate,
+                       'ratio': round(tick['p50'] / bare['p50'], 3), 'ratio_raw': round(tick['p50'] / raw['p50'], 3),
+                       'ratio_plate': round(plate['p50'] / bare['p50'], 3)})
 
     def median(name: str) -> dict[str, float]:
         return {key: round(statistics.median(r[name][key] for r in rounds), 4) for key in ('p50', 'p99')}
 
-    figures: dict[str, Any] = {name: median(name) for name in ('tick_ms', 'pingpong_ms', 'pingpong_raw_ms')}
-    for name in ('ratio', 'ratio_raw'):
+    figures: dict[str, Any] = {
+        name: median(name) for name in ('tick_ms', 'tick_plate_ms', 'pingpong_ms', 'pingpong_raw_ms')}
+    for name in ('ratio', 'ratio_raw', 'ratio_plate'):
         ratios = [r[name] for r in rounds]
         figures |= {name: statistics.median(ratios), f'{name}_min_max': [min(ratios), max(ratios)]}
     return {**figures, 'rounds': rounds}

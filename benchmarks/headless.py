@@ -2,7 +2,8 @@
 
 The engine's step is timed by itself within the very ticks that are timed as a whole: the states are the same, and the
 machine is as busy. Rounds with the one physics and with the other alternate. Where the rest of a tick goes is timed in
-further rounds, and what a step of a policy costs beside its ticks in episodes of a policy.
+further rounds, and what a step of a policy costs beside its ticks in episodes of a policy. The same with two axes, on
+`plate`.
 """
 
 import statistics
@@ -15,6 +16,7 @@ from unittest import mock
 import numpy as np
 import pinocchio as pin
 from shared_control.env import SharedControlEnv
+from shared_control.plugins import TASKS, load
 from shared_control.rates import TICKS_PER_ACTION
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.evaluation.evaluate import as_tested, run_test_episode
@@ -25,14 +27,17 @@ PHYSICS = ('bullet', 'mujoco')
 ROUNDS = 7
 TICKS = 4000
 LEVEL = np.array([-2.1])
-"""The moment that keeps the tray level, N m: the ball stays on it, in contact."""
+"""The moment that keeps the tray of `balance` level, N m: the ball stays on it, in contact."""
+LEVELS = {'balance': LEVEL, 'plate': np.array([-0.1, -2.5])}
+"""The same of each task that is measured."""
 
 
 class TimedPlant(LocalPlant):
     """A plant that keeps how long its last physics step took, s."""
 
-    def __init__(self, physics: str):
-        super().__init__(physics=physics)
+    def __init__(self, task: str, physics: str):
+        super().__init__(load(TASKS, task)(), physics=physics)
+        self._level = LEVELS[task]
         advance = self.world._advance
 
         def timed() -> None:
@@ -48,7 +53,7 @@ class TimedPlant(LocalPlant):
         ticks, steps = [], []
         for _ in range(TICKS):
             started = time.perf_counter()
-            self.tick(LEVEL)
+            self.tick(self._level)
             ticks.append(time.perf_counter() - started)
             steps.append(self.step_seconds)
         return statistics.median(ticks) * 1e6, statistics.median(steps) * 1e6
@@ -56,13 +61,20 @@ class TimedPlant(LocalPlant):
 
 def measure() -> dict[str, Any]:
     """``tick_us``, ``step_us``, their ``ratio``, ``parts_us`` and ``policy_step_us`` with PyBullet, the same below
-    ``mujoco``, and how long MuJoCo's tick takes in PyBullet's: medians over the rounds."""
-    plants = [TimedPlant(physics) for physics in PHYSICS]
+    ``mujoco``, and how long MuJoCo's tick takes in PyBullet's: medians over the rounds; ticks with two axes below
+    ``plate``."""
+    figures, plate = (_ticks(task) for task in LEVELS)
+    for physics, own in zip(PHYSICS, (figures, figures['mujoco']), strict=True):
+        own |= {'parts_us': parts(physics), 'policy_step_us': policy_step(physics)}
+    return {**figures, 'plate': plate}
+
+
+def _ticks(task: str) -> dict[str, Any]:
+    plants = [TimedPlant(task, physics) for physics in PHYSICS]
     rounds = [[plant.round() for plant in plants] for _ in range(ROUNDS)]
     for plant in plants:
         plant.close()
-    bullet, mujoco = ({**_figures(list(own)), 'parts_us': parts(physics), 'policy_step_us': policy_step(physics)}
-                      for physics, own in zip(PHYSICS, zip(*rounds, strict=True), strict=True))
+    bullet, mujoco = (_figures(list(own)) for own in zip(*rounds, strict=True))
     return {**bullet, 'mujoco': {
         **mujoco, **_spread('tick_in_bullets', [mujoco / bullet for (bullet, _), (mujoco, _) in rounds])}}
 
