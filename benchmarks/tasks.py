@@ -4,6 +4,8 @@
     python benchmarks/tasks.py --conditions detour-taught --seeds 3
 
 - ``taught``: by the simulated expert (its way-points on ``detour``), by the preset of the task.
+- ``coached``: the same by the preset ``coached``.
+- ``nobody``: the preset of the task with nobody.
 - ``alone``: PPO with nobody, a network of 64 x 64 where a linear law is not enough; tested every fifth episode.
 - ``LQR``: a linear model fitted by least squares to one episode of random moments, and the linear-quadratic regulator
   of that model to the goal. No learning beyond that episode.
@@ -26,7 +28,7 @@ from shared_control.plugins import TASKS, load
 from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task, settled
 from shared_control.teaching.profiles import EXPERT
-from shared_control.teaching.tutors import make_tutor
+from shared_control.teaching.tutors import Who, make_tutor
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import TEST_SEED, as_tested, evaluate
@@ -49,22 +51,32 @@ ALONE_NETWORK = PpoPreset('autonomous', AUTONOMOUS.task, replace(AUTONOMOUS.sett
 
 def taught(task: Task, seed: int, folder: Path) -> dict[str, Any]:
     """The preset of the task, with the expert at the keys."""
-    training = train(preset_for(task.name), EXPERT, seed, TAUGHT_EPISODES, folder=folder)
-    return {'skilled': training.skilled, 'episodes': training.episodes,
-            'held': training.intervention_rates, **alone_in_the_end(folder, seed)}
+    return learned(preset_for(task.name), EXPERT, seed, folder)
+
+
+def coached(task: Task, seed: int, folder: Path) -> dict[str, Any]:
+    """The preset ``coached``, with the expert at the keys."""
+    return learned(preset_for(task.name, 'coached'), EXPERT, seed, folder)
+
+
+def nobody(task: Task, seed: int, folder: Path) -> dict[str, Any]:
+    """The preset of the task, with nobody at the keys."""
+    return learned(preset_for(task.name), None, seed, folder)
 
 
 def alone(task: Task, seed: int, folder: Path) -> dict[str, Any]:
     """PPO with nobody."""
     chosen: Preset = replace(AUTONOMOUS if task.preset != 'coached_network' else ALONE_NETWORK, task=task)
-    training = train(chosen, None, seed, ALONE_EPISODES, folder=folder, evaluate_every=ALONE_TESTED_EVERY)
-    return {'skilled': training.skilled, 'episodes': training.episodes, **alone_in_the_end(folder, seed)}
+    return learned(chosen, None, seed, folder, ALONE_EPISODES, ALONE_TESTED_EVERY)
 
 
-def alone_in_the_end(folder: Path, seed: int) -> dict[str, Any]:
-    """The randomised test of the policy in ``folder``."""
+def learned(preset: Preset, tutor: Who | None, seed: int, folder: Path, episodes: int = TAUGHT_EPISODES,
+            evaluate_every: int = 1) -> dict[str, Any]:
+    """A policy, taught or not, and its randomised test in the end."""
+    training = train(preset, tutor, seed, episodes, folder=folder, evaluate_every=evaluate_every)
     learner = load_policy(folder / POLICY_NAME)
-    return tested(learner.act, learner.task, seed)
+    return {'skilled': training.skilled, 'episodes': training.episodes, 'held': training.intervention_rates,
+            **tested(learner.act, learner.task, seed)}
 
 
 def tested(act: Callable[[np.ndarray], np.ndarray], task: Task, seed: int) -> dict[str, Any]:
@@ -131,8 +143,9 @@ def human(task: Task, seed: int, folder: Path) -> dict[str, Any]:
             'position_error': float(np.mean([settled(np.array(e.position_error)) for e in episodes]))}
 
 
-WAYS = {'taught': taught, 'alone': alone, 'LQR': regulator, 'human': human}
-CONDITIONS = [f'{task}-{way}' for task in ('balance', 'plate', 'detour') for way in WAYS]
+WAYS = {'taught': taught, 'coached': coached, 'nobody': nobody, 'alone': alone, 'LQR': regulator, 'human': human}
+CONDITIONS = [f'{task}-{way}' for task in ('balance', 'plate', 'detour') for way in WAYS
+              if task != 'detour' or way not in ('coached', 'nobody')]  # its preset learns from corrections
 
 
 def run(name: str, seed: int, output: Path) -> dict[str, Any]:
@@ -150,7 +163,7 @@ def run(name: str, seed: int, output: Path) -> dict[str, Any]:
 def row(name: str, results: list[dict[str, Any]]) -> str:
     """A line of the table."""
     skilled = sorted(np.inf if r['skilled'] is None else r['skilled'] for r in results)
-    learns = name.endswith(('taught', 'alone'))
+    learns = not name.endswith(('LQR', 'human'))
     episodes = f'{np.median(skilled):.0f} ({skilled[0]:.0f} to {skilled[-1]:.0f})' if learns else '-'
     never = f'{sum(np.isinf(skilled))}' if learns else '-'
     successes = [r['successes'] for r in results]

@@ -46,7 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add('--profile', f'who the simulated tutor is, a profile or a family of which the seed draws one: '
         f'{", ".join(TUTOR_NAMES)} (default: {default.profile})', choices=TUTOR_NAMES, metavar='NAME')
     add('--task', "what is learned (default: the preset's task, or balance)", choices=names(TASKS))
-    add('--preset', "how it is learned (default: the task's preset; guided for balance)", choices=names(LEARNERS))
+    add('--preset', "how it is learned (default: the task's; guided for balance and plate)", choices=names(LEARNERS))
     add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
     add('--sharing', f'what counts of the two moments (default: {default.sharing})', choices=WAYS)
     add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '

@@ -34,7 +34,7 @@ def add_train(commands: argparse._SubParsersAction) -> None:
                   'shared-control train --preset autonomous --episodes 30 --output out/alone',
                   'shared-control train --resume out/train --episodes 40'])
     parser.add_argument('--preset', choices=names(LEARNERS), default='',
-                        help="how it is learned (default: the task's preset; guided for balance)")
+                        help="how it is learned (default: the task's; guided for balance and plate)")
     parser.add_argument('--task', choices=names(TASKS), default='',
                         help="what is learned (default: the preset's task, or balance)")
     parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='what the arm moves in')

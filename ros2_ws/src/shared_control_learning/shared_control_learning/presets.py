@@ -101,7 +101,8 @@ def preset_for(task: str = '', name: str = '') -> Preset:
     """The preset called ``name`` for the task called ``task``.
 
     Args:
-        task: with its default settings; the one that the preset was made for when empty.
+        task: with its default settings, and the integrals of its errors if the preset's own task has them; the one
+            that the preset was made for when empty.
         name: of the preset; the one that the task is learned by when empty, too.
 
     Raises:
@@ -109,4 +110,6 @@ def preset_for(task: str = '', name: str = '') -> Preset:
     """
     made = load(TASKS, task)() if task else BALANCE
     found = preset(name or made.preset)
-    return found if not task or task == found.task.name else replace(found, task=made)
+    if not task or task == found.task.name:
+        return found
+    return replace(found, task=replace(made, integrates=found.task.integrates and bool(made.errors)))

@@ -27,7 +27,7 @@ from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.corrections import find_corrections
 from shared_control_learning.episode import Episode
 from shared_control_learning.learn import learn
-from shared_control_learning.presets import AUTONOMOUS, COACHED, COACHED_NETWORK, preset
+from shared_control_learning.presets import AUTONOMOUS, COACHED, COACHED_NETWORK, preset, preset_for
 from shared_control_learning.settings import CoachingSettings
 from shared_control_testing.rolling import rolling
 
@@ -95,6 +95,15 @@ def test_corrections_are_taught_for_some_episodes_and_then_forgotten():
         assert len(learner.corrections) == remembered, f'{later} episodes later'
     learner.learn_from(make_episode(learner))
     assert len(learner.corrections) == 0
+
+
+@pytest.mark.parametrize(('task', 'name', 'learned_by', 'observed'), [
+    ('balance', '', 'guided', 4), ('balance', 'coached', 'coached', 3), ('plate', '', 'guided', 8),
+    ('plate', 'coached', 'coached', 6), ('detour', '', 'coached_network', 6), ('detour', 'guided', 'guided', 6)])
+def test_a_task_is_learned_by_its_own_preset_and_seen_as_the_preset_has_it(task, name, learned_by, observed):
+    found = preset_for(task, name)
+    assert (found.name, found.task.name, found.task.observed_size) == (learned_by, task, observed)
+    assert found.make().act(np.zeros(observed, np.float32)).shape == (len(found.task.axes),)
 
 
 def test_exploring_fades_and_its_noise_is_correlated():

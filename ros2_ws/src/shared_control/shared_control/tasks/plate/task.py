@@ -65,6 +65,7 @@ class Plate(Task):
     """
 
     name: ClassVar[str] = 'plate'
+    preset: ClassVar[str] = 'guided'
     instruction: ClassVar[str] = 'Bring the ball to the centre of the plate and keep it there.'
     axes: ClassVar[tuple[int, ...]] = (3, 4)
     # About x, positive: the ball rolls to -y, away from who looks; about y: to +x, the left of every picture.
