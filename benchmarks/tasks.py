@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from learning import median_with_interval
 from scipy.linalg import solve_discrete_are
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
@@ -31,7 +32,7 @@ from shared_control.teaching.profiles import EXPERT
 from shared_control.teaching.tutors import Who, make_tutor
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
-from shared_control_learning.evaluation.evaluate import TEST_SEED, as_tested, evaluate
+from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_SEED, as_tested, evaluate
 from shared_control_learning.learn import run_episode
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import AUTONOMOUS, PpoPreset, Preset, preset_for
@@ -161,15 +162,19 @@ def run(name: str, seed: int, output: Path) -> dict[str, Any]:
 
 
 def row(name: str, results: list[dict[str, Any]]) -> str:
-    """A line of the table."""
-    skilled = sorted(np.inf if r['skilled'] is None else r['skilled'] for r in results)
+    """A line of the table: medians with 95 % intervals, a run that was never skilled counted as infinite."""
+    skilled = [np.inf if r['skilled'] is None else r['skilled'] for r in results]
+    middle, *interval = median_with_interval(skilled)
     learns = not name.endswith(('LQR', 'human'))
-    episodes = f'{np.median(skilled):.0f} ({skilled[0]:.0f} to {skilled[-1]:.0f})' if learns else '-'
-    never = f'{sum(np.isinf(skilled))}' if learns else '-'
-    successes = [r['successes'] for r in results]
-    off = [1e3 * r['position_error'] for r in results]
-    return (f'{name:16} {len(results):>5} {episodes:>18} {never:>6} {np.median(successes):>7.1f} '
-            f'({min(successes)} to {max(successes)})   {np.median(off):.1f} ({min(off):.1f} to {max(off):.1f})')
+    episodes = f'{middle:g} {_shown(interval)}, {max(skilled):g}' if learns else '-'
+    passed = sum(r['successes'] >= SUCCESSES_NEEDED for r in results)
+    off, *interval = median_with_interval([1e3 * r['position_error'] for r in results])
+    return f'{name:16} {len(results):>5}  {episodes:22} {passed:>6}  {off:.1f} {_shown(interval)}'
+
+
+def _shown(interval: list[float]) -> str:
+    low, high = interval
+    return f'[{low:.3g}, {high:.3g}]'
 
 
 def main() -> None:
@@ -186,7 +191,7 @@ def main() -> None:
         for name in args.conditions:
             if not args.table or (args.output / name / f'{seed:03}' / 'result.json').exists():
                 results[name].append(run(name, seed, args.output))
-    print(f'{"":16} {"seeds":>5} {"episodes, median":>18} {"never":>6}  of 20 succeed   off at the end, mm')
+    print(f'{"":16} {"seeds":>5}  {"episodes, slowest":22} {"passed":>6}  off at the end, mm')
     for name, found in results.items():
         if found:
             print(row(name, found))
