@@ -2,8 +2,8 @@
 
 The engine's step is timed by itself within the very ticks that are timed as a whole: the states are the same, and the
 machine is as busy. Rounds with the one physics and with the other alternate. Where the rest of a tick goes is timed in
-further rounds, and what a step of a policy costs beside its ticks in episodes of a policy. The same with two axes, on
-`plate`.
+further rounds, and what a step of a policy costs beside its ticks in episodes of a policy. Ticks with two axes, on
+`plate`, too.
 """
 
 import statistics

@@ -144,6 +144,12 @@ def with_interval(values: np.ndarray, statistic: Callable[..., Any]) -> list[flo
     return [float(middle), float(low), float(high)]
 
 
+def shown(figures: list[float], digits: int = 4) -> str:
+    """A statistic and its interval, as :func:`with_interval` gives them, in a line."""
+    middle, low, high = (f'{figure:.{digits}g}' for figure in figures)
+    return f'{middle} [{low}, {high}]'
+
+
 def median_with_interval(values: list[float]) -> list[float]:
     """Median and its 95 % bootstrap interval; runs that never got there count as infinite."""
     finite = np.where(np.isinf(values), 1e9, values)
@@ -195,19 +201,15 @@ def compare(rows: list[dict[str, Any]], reference: str) -> None:
 
 def tell(row: dict[str, Any]) -> None:
     """Print a condition."""
-    def interval(key: str) -> str:
-        median, low, high = row[key]
-        return f'{median:.4g} [{low:.4g}, {high:.4g}]'
-
     episodes = f'{CONDITIONS[row["condition"]].episodes} episodes each'
     if 'censored' in row:
-        episodes = (f'{row["censored"]} never skilled; episodes to skilled {interval("episodes_to_skilled")}, slowest '
-                    f'{row["slowest"]:g}')
-    print(f'{row["condition"]}: {row["seeds"]} seeds, {episodes}; at the end {interval("successes")} of 20 succeed, '
-          f'|position error| {interval("position_error_mm")} mm (SD {row["position_error_sd_mm"]:.2g}), |velocity| '
-          f'{interval("velocity_mm_s")} mm/s (SD {row["velocity_sd_mm_s"]:.2g}); human holds '
+        episodes = (f'{row["censored"]} never skilled; episodes to skilled {shown(row["episodes_to_skilled"])}, '
+                    f'slowest {row["slowest"]:g}')
+    print(f'{row["condition"]}: {row["seeds"]} seeds, {episodes}; at the end {shown(row["successes"])} of 20 succeed, '
+          f'|position error| {shown(row["position_error_mm"])} mm (SD {row["position_error_sd_mm"]:.2g}), |velocity| '
+          f'{shown(row["velocity_mm_s"])} mm/s (SD {row["velocity_sd_mm_s"]:.2g}); human holds '
           f'{row["intervention_first"]:.0%} of the first, {row["intervention_last"]:.0%} of the last episode; '
-          f'{interval("seconds")} s', flush=True)
+          f'{shown(row["seconds"])} s', flush=True)
     if 'retained' in row:
         print(f'{"":{len(row["condition"])}}  keeps it for {RETENTION_EPISODES} episodes without the tutor, '
               f'tested every {RETENTION_TESTED_EVERY}: '

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from learning import median_with_interval
+from learning import median_with_interval, shown
 from scipy.linalg import solve_discrete_are
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
@@ -164,17 +164,11 @@ def run(name: str, seed: int, output: Path) -> dict[str, Any]:
 def row(name: str, results: list[dict[str, Any]]) -> str:
     """A line of the table: medians with 95 % intervals, a run that was never skilled counted as infinite."""
     skilled = [np.inf if r['skilled'] is None else r['skilled'] for r in results]
-    middle, *interval = median_with_interval(skilled)
     learns = not name.endswith(('LQR', 'human'))
-    episodes = f'{middle:g} {_shown(interval)}, {max(skilled):g}' if learns else '-'
+    episodes = f'{shown(median_with_interval(skilled), 3)}, {max(skilled):g}' if learns else '-'
     passed = sum(r['successes'] >= SUCCESSES_NEEDED for r in results)
-    off, *interval = median_with_interval([1e3 * r['position_error'] for r in results])
-    return f'{name:16} {len(results):>5}  {episodes:22} {passed:>6}  {off:.1f} {_shown(interval)}'
-
-
-def _shown(interval: list[float]) -> str:
-    low, high = interval
-    return f'[{low:.3g}, {high:.3g}]'
+    off = median_with_interval([1e3 * r['position_error'] for r in results])
+    return f'{name:16} {len(results):>5}  {episodes:22} {passed:>6}  {shown(off, 3)}'
 
 
 def main() -> None:
