@@ -111,9 +111,19 @@ def run_node(name: str, file: str, arguments: list[str]) -> int:
     from shared_control_ros.runner import run
     make, stations = NODES[name]
     stamps = Stamps(stations)
-    code = run(lambda: make(stamps), [name, *arguments])
-    np.save(file, np.array(stamps.rows))
-    return code
+
+    def stamped() -> Any:
+        node = make(stamps)
+        close = node.close
+
+        def save_and_close() -> None:
+            np.save(file, np.array(stamps.rows))  # here, since the middleware may never come back from taking leave
+            close()
+
+        node.close = save_and_close
+        return node
+
+    return run(stamped, [name, *arguments])
 
 
 def measure() -> dict[str, Any]:
