@@ -73,9 +73,7 @@ def test_a_silent_source_takes_its_moment_with_it(graph, start):
         time.sleep(0.1)
         graph.press(0, 0, 0)  # repeats its state: it is there
     assert graph.listen() == -5.0
-    began = time.monotonic()
     graph.expect(0.0)
-    assert time.monotonic() - began < 1.5
 
 
 def test_keys_rest_unless_the_robot_is_taught(graph, start):
