@@ -26,7 +26,7 @@ from shared_control.teaching.tutors import TUTOR_NAMES
 from shared_control_ros.host_and_port import host_and_port
 
 from .parameters import DEFAULTS
-from .settings import TUTORS, Settings
+from .settings import EPISODES_OF_SIMULATED, TUTORS, Settings
 
 _NEW_ONLY = ('output', 'overwrite', 'params_file')
 """Options, besides settings, that a session that goes on has no use for: it has a folder, and keeps its file there."""
@@ -49,8 +49,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add('--preset', "how it is learned (default: the task's; guided for balance and plate)", choices=names(LEARNERS))
     add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
     add('--sharing', f'what counts of the two moments (default: {default.sharing})', choices=WAYS)
-    add('--episodes', f'teach this many, then test; 0: until you say that it has learned it (default: '
-        f'{default.episodes})', type=int, metavar='N')
+    add('--episodes', 'teach this many, then test; 0: until you say that it has learned it, or for all of --minutes '
+        f'(default: {default.episodes}; with --tutor sim: {EPISODES_OF_SIMULATED})', type=int, metavar='N')
     add('--minutes', f'teach for this long at the most (default: {default.minutes:g})', type=float, metavar='MIN')
     add('--test-episodes', 'test the policy alone in this many episodes at the end; 0: no test (default: '
         f'{default.test_episodes})', type=int, metavar='N')

@@ -36,7 +36,7 @@ from .neighbours import Neighbours
 from .node_process import NodeProcess
 from .options import given_settings, refuse_options_of_new_sessions
 from .page import Page
-from .settings import Settings
+from .settings import EPISODES_OF_SIMULATED, Settings
 from .supervisor import STOP_SECONDS
 from .teaching import POLL_SECONDS, End, teach
 
@@ -113,7 +113,10 @@ def _test_only(settings: Settings, folder: SessionFolder) -> int:
 
 
 def _new_settings(args: argparse.Namespace) -> Settings:
-    return Settings().with_options(given_settings(args)).resolved()
+    given = given_settings(args)
+    if given.get('tutor') == 'sim':
+        given.setdefault('episodes', EPISODES_OF_SIMULATED)
+    return Settings().with_options(given).resolved()
 
 
 def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settings:

@@ -24,6 +24,8 @@ from shared_control.teaching.feedback import FEEDBACK
 from shared_control.teaching.tutors import TUTOR_NAMES
 
 TUTORS = ('keyboard', 'page', 'sim', 'none')
+EPISODES_OF_SIMULATED = 20
+"""A simulated tutor teaches so many when nothing else is asked for: it cannot say that the robot has learned it."""
 SIMULATED = 'simulated: '
 """Before the profile, where settings.json names a simulated tutor."""
 FIXED = ('task', 'preset', 'physics', 'robot', 'seed')

@@ -117,6 +117,13 @@ def test_a_blind_session_says_neither_condition_nor_folder_and_stays_blind(sessi
     assert (page['feedback'], page['verdicts'], page['shows_result']) == ('ball', False, False)
 
 
+def test_a_simulated_tutor_comes_to_an_end(session, tmp_path):
+    assert session('--tutor', 'sim', '--output', tmp_path / 'some') == 0
+    assert session('--tutor', 'sim', '--episodes', 0, '--output', tmp_path / 'all_minutes') == 0
+    assert session('--tutor', 'none', '--output', tmp_path / 'nobody') == 0
+    assert [settings_of(tmp_path / name)['episodes'] for name in ('some', 'all_minutes', 'nobody')] == [20, 0, 0]
+
+
 def test_overwriting_removes_what_a_session_writes_and_nothing_else(session, tmp_path, capsys):
     folder = tmp_path / 'session'
     assert session('--tutor', 'sim', '--output', folder) == 0
