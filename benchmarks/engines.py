@@ -14,16 +14,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from learning import randomized_test
 from shared_control.command_line import script_parser
-from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, names
 from shared_control.tasks.task import settled
 from shared_control.teaching.profiles import EXPERT
-from shared_control_learning.evaluation.evaluate import TEST_SEED, as_tested, evaluate
+from shared_control_learning.evaluation.evaluate import TEST_SEED
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import preset_for
 from shared_control_learning.training import train
-from shared_control_sim.local_plant import LocalPlant
 
 PHYSICS = ('bullet', 'mujoco')
 EPISODES = 30
@@ -44,9 +43,7 @@ def run(task: str, trained_in: str, seed: int, folder: Path) -> dict[str, Any]:
 def tested(folder: Path, physics: str, seed: int) -> dict[str, list[Any]]:
     """Of each episode of the test: whether it succeeded, and how far off the ball was at the end, m."""
     learner = load_policy(folder / POLICY_NAME)
-    env = SharedControlEnv(LocalPlant(learner.task, physics=physics), as_tested(learner.task))
-    episodes = evaluate(learner.act, env, seed=TEST_SEED + seed).episodes
-    env.close()
+    episodes = randomized_test(learner.act, learner.task, TEST_SEED + seed, physics).episodes
     return {'success': [bool(episode.success) for episode in episodes],
             'position_error': [float(settled(np.array(episode.position_error))) for episode in episodes]}
 

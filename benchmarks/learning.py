@@ -26,11 +26,12 @@ from scipy.stats import bootstrap
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
+from shared_control.tasks.task import Task
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
-from shared_control_learning.evaluation.evaluate import as_tested, evaluate
+from shared_control_learning.evaluation.evaluate import Act, Evaluation, as_tested, evaluate
 from shared_control_learning.learn import learn
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import preset
@@ -104,10 +105,16 @@ def taught(condition: Condition, seed: int, folder: Path, limit: int | None) -> 
 def final_test(policy: Path, seed: int) -> dict[str, float]:
     """The randomised test of a policy."""
     learner = load_policy(policy)
-    env = SharedControlEnv(LocalPlant(learner.task), as_tested(learner.task))
-    test = evaluate(learner.act, env, seed=TEST_SEED + seed)
-    env.close()
+    test = randomized_test(learner.act, learner.task, TEST_SEED + seed)
     return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
+
+
+def randomized_test(act: Act, task: Task, seed: int, physics: str = 'bullet') -> Evaluation:
+    """The randomised test of ``act``, with the ball starts of ``seed``."""
+    env = SharedControlEnv(LocalPlant(task, physics=physics), as_tested(task))
+    test = evaluate(act, env, seed=seed)
+    env.close()
+    return test
 
 
 class _TestNowAndThen(Callbacks):

@@ -15,13 +15,12 @@ Skilled: 19 of 20 randomised episodes, in two tests in a row. All tutors are sim
 """
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from learning import median_with_interval, shown
+from learning import median_with_interval, randomized_test, shown
 from scipy.linalg import solve_discrete_are
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
@@ -32,7 +31,7 @@ from shared_control.teaching.profiles import EXPERT
 from shared_control.teaching.tutors import Who, make_tutor
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
-from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_SEED, as_tested, evaluate
+from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_SEED, Act
 from shared_control_learning.learn import run_episode
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import AUTONOMOUS, PpoPreset, Preset, preset_for
@@ -77,14 +76,12 @@ def learned(preset: Preset, tutor: Who | None, seed: int, folder: Path, episodes
     training = train(preset, tutor, seed, episodes, folder=folder, evaluate_every=evaluate_every)
     learner = load_policy(folder / POLICY_NAME)
     return {'skilled': training.skilled, 'episodes': training.episodes, 'held': training.intervention_rates,
-            **tested(learner.act, learner.task, seed)}
+            **final_test(learner.act, learner.task, seed)}
 
 
-def tested(act: Callable[[np.ndarray], np.ndarray], task: Task, seed: int) -> dict[str, Any]:
-    """The randomised test of ``act``."""
-    env = SharedControlEnv(LocalPlant(task), as_tested(task))
-    test = evaluate(act, env, seed=TEST_SEED + seed)
-    env.close()
+def final_test(act: Act, task: Task, seed: int) -> dict[str, Any]:
+    """What is kept of the randomised test of ``act``."""
+    test = randomized_test(act, task, TEST_SEED + seed)
     return {'successes': test.successes, 'position_error': test.mean_position_error}
 
 
@@ -129,7 +126,7 @@ def regulator(task: Task, seed: int, folder: Path) -> dict[str, Any]:
         last = np.clip(moment - gain @ (np.concatenate((observation, last)) - rest), -1.0, 1.0)
         return last
 
-    return {'skilled': None, 'episodes': 1, **tested(act, task, seed)}
+    return {'skilled': None, 'episodes': 1, **final_test(act, task, seed)}
 
 
 def human(task: Task, seed: int, folder: Path) -> dict[str, Any]:
