@@ -40,6 +40,8 @@ POLL_PERIOD = 0.02
 """s. Taking what has come every 20 ms costs a fraction of waking up for every message."""
 SERVICE_POLLS = 5
 """Services (parameters) are looked after every so many polls: that costs as much as a poll."""
+LAST_WAIT = 0.25
+"""s. What was sent before the recorder is stopped may still be on its way, on a busy machine for tens of ms."""
 
 
 class RecordedTopic:
@@ -184,6 +186,7 @@ class SessionRecorder:
             if poll % SERVICE_POLLS == 0:
                 self._background.poll()
             time.sleep(max(0.0, started + POLL_PERIOD - time.monotonic()))
+        time.sleep(LAST_WAIT)
         self._drain()
         self._bag.finish()
         self.node.get_logger().info(f'{self._bag.messages} messages in {self._bag.path}')

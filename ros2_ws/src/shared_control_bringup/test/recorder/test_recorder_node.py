@@ -130,6 +130,20 @@ def test_a_long_recording_goes_on_in_other_files_without_a_gap(start_recorder, t
     assert sum(counts) == 3000 and sum(count > 0 for count in counts) > 1
 
 
+def test_what_was_on_its_way_when_it_was_stopped_is_in_the_bag(start_recorder, traffic, tmp_path):
+    bag = tmp_path / 'bag'
+    recorder = start_recorder(bag)
+    traffic.wait_for_recorder()
+    recorder.process.send_signal(signal.SIGSTOP)  # as a busy machine holds it up
+    traffic.run(0.1)
+    recorder.process.send_signal(signal.SIGINT)
+    code, errors = recorder.stop(signal.SIGCONT)
+    assert code == 0, errors
+    recorded = read_with_rosbags(bag)
+    for topic, sent in traffic.sent.items():
+        assert recorded.get(topic, []) == sent, topic
+
+
 def test_a_killed_recorder_loses_at_most_a_second_and_the_next_goes_on(start_recorder, traffic, tmp_path):
     bag = tmp_path / 'bag'
     recorder = start_recorder(bag)
