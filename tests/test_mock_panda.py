@@ -132,8 +132,10 @@ class TestEveryRobot:
         assert (q >= panda().q_min).all() and (q <= panda().q_max).all()
         assert (np.abs(qd) <= panda().qd_max).all()
         assert (np.abs(torque) <= panda().torque_max).all()
-        stamps = np.array([to_ns(m.header.stamp) for m in robot.states])
-        assert (np.diff(torque, axis=0)[np.diff(stamps) == 1_000_000] <= 1.0 + 1e-6).all(), '1000 N m/s'
+        within_rate = (np.abs(np.diff(torque, axis=0)) <= 1.0 + 1e-6).all(axis=1)
+        following = np.diff([to_ns(m.header.stamp) for m in robot.states]) == 1_000_000
+        braked = ~torque[1:].any(axis=1)  # no commands for 0.1 s, on a busy machine: at once there is no torque
+        assert (within_rate | braked)[following].all(), '1000 N m/s'
 
     def test_topics_are_those_of_the_contract(self, robot):
         robot.balance_until(lambda: len(robot.balls) > 5 and robot.states)
