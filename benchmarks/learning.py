@@ -35,7 +35,7 @@ from shared_control_learning.evaluation.evaluate import Act, Evaluation, as_test
 from shared_control_learning.learn import learn
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
 from shared_control_learning.presets import preset
-from shared_control_learning.training import TEST_SEED, passes_now, train
+from shared_control_learning.training import TEST_OFFSET, passes_now, train
 from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
 
@@ -105,7 +105,7 @@ def taught(condition: Condition, seed: int, folder: Path, limit: int | None) -> 
 def final_test(policy: Path, seed: int) -> dict[str, float]:
     """The randomised test of a policy."""
     learner = load_policy(policy)
-    test = randomized_test(learner.act, learner.task, TEST_SEED + seed)
+    test = randomized_test(learner.act, learner.task, TEST_OFFSET + seed)
     return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
 
 

@@ -44,7 +44,7 @@ from .wrong_content import what_is_wrong
 RUN_NAME = 'run.json'
 TENSORBOARD_NAME = 'tensorboard'
 
-TEST_SEED = 1_000_000
+TEST_OFFSET = 1_000_000
 """Added to the run's seed: tests draw other ball starts than the teaching."""
 
 
@@ -157,7 +157,7 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
 
 def passes_now(learner: Learner, test_env: SharedControlEnv, seed: int, helpers: ParallelTest | None = None) -> bool:
     """Whether the learner of the run ``seed`` passes the test that belongs to the episodes it has learned from."""
-    test = episode_seed(TEST_SEED + seed, learner.episode)
+    test = episode_seed(TEST_OFFSET + seed, learner.episode)
     return passes(learner.act, test_env, test) if helpers is None else helpers.passes(learner, test_env, test)
 
 
