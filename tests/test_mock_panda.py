@@ -1,9 +1,10 @@
 """The graph on the mock of a real Panda: the same tests as with the simulator, and what only a robot does.
 
-The mock runs with its jitter and losses, at less than half its pace, since a test machine is no real-time machine.
+The mock runs with its jitter and losses, at a fifth of its pace, since a test machine is no real-time machine.
 """
 
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from std_srvs.srv import SetBool, Trigger
 LATE = {'enabled': True, 'prediction_horizon': 0.01}
 ROBOTS = {
     'panda_sim_node': ({'paced': False, 'seed': 3}, {'enabled': True, 'wait_for': ['agent']}),
-    'mock_panda_node': ({'pace': 0.4, 'seed': 3}, {**LATE, 'robot_compensates_gravity': True}),
+    'mock_panda_node': ({'pace': 0.2, 'seed': 3}, {**LATE, 'robot_compensates_gravity': True}),
 }
 STEPS = 150
 """3 s: when nobody balances it, the ball lies at the end of the tray by then."""
@@ -53,7 +54,7 @@ class Robot:
 
     def balance(self, steps):
         """Drop the ball and balance it; position errors, m, and velocities, m/s, of each step."""
-        while True:
+        for _ in range(10):
             observation, info = self.env.reset(seed=5)
             states = [info['state']]
             self.states.clear()
@@ -64,7 +65,14 @@ class Robot:
                     assert not fallen
             except PlantInterrupted:  # the machine was busy for a second: the agent begins anew, too
                 continue
-            return [s.position_error for s in states], [s.velocity for s in states]
+            if not self._has_braked():
+                return [s.position_error for s in states], [s.velocity for s in states]
+        raise AssertionError('ten times the machine was too busy')
+
+    def _has_braked(self):
+        """Whether the control ended meanwhile: the machine was so busy that no torques came for 0.1 s of the robot."""
+        moved = [any(m.effort) for m in self.states]
+        return any(before and not after for before, after in pairwise(moved))
 
     def balance_until(self, condition):
         """Drop the ball and balance it until something is the case."""
@@ -134,8 +142,7 @@ class TestEveryRobot:
         assert (np.abs(torque) <= panda().torque_max).all()
         within_rate = (np.abs(np.diff(torque, axis=0)) <= 1.0 + 1e-6).all(axis=1)
         following = np.diff([to_ns(m.header.stamp) for m in robot.states]) == 1_000_000
-        braked = ~torque[1:].any(axis=1)  # no commands for 0.1 s, on a busy machine: at once there is no torque
-        assert (within_rate | braked)[following].all(), '1000 N m/s'
+        assert within_rate[following].all(), '1000 N m/s'
 
     def test_topics_are_those_of_the_contract(self, robot):
         robot.balance_until(lambda: len(robot.balls) > 5 and robot.states)
@@ -162,8 +169,8 @@ class TestOnlyARobot:
 
     def test_it_loses_commands_and_goes_on(self, mock):
         mock.env.reset(seed=1)
-        mock.spin(lambda: mock.said('dropped_commands') and int(mock.said('dropped_commands')[-1]) > 3)
-        assert mock.said('mode')[-1] == 'move'
+        mock.spin(lambda: (mock.said('dropped_commands') and int(mock.said('dropped_commands')[-1]) > 3
+                           and mock.said('mode')[-1] == 'move'))
 
     def test_time_does_not_stand_still(self, mock):
         response = mock.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=True))
