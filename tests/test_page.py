@@ -170,27 +170,28 @@ class TestASessionOnThePage:
         browser.wait(lambda: browser.part('finish').is_displayed(), 'the teaching to go on')
 
     def test_an_episode_ends_in_the_charts(self, browser):
-        assert browser.chart('returns') == [[]]
+        before = len(browser.chart('returns')[0])  # on a slow machine one has ended by itself
         for _ in range(2):
             browser.type(Keys.ARROW_RIGHT)  # the ball falls, soon: nobody has to wait for 15 s
         browser.wait(lambda: browser.text('card-outcome').startswith('The ball '), 'how it ended', timeout=60)
         browser.wait(lambda: browser.text('card-next').startswith('Next in'), 'when the next begins')
-        browser.wait(lambda: len(browser.chart('returns')[0]) == 1, 'the return', timeout=60)
-        assert 0 <= browser.chart('shares')[0][0] <= 100
+        browser.wait(lambda: len(browser.chart('returns')[0]) == before + 1, 'the return', timeout=60)
+        assert 0 <= browser.chart('shares')[0][-1] <= 100
 
     def test_the_person_judges_it(self, browser):
         pressed = 'return [...document.querySelectorAll(".judge [aria-pressed=true]")].map((b) => b.dataset.part)'
-        assert browser.text('judged') == 'Episode 1'
+        ended = len(browser.chart('returns')[0])
+        assert browser.text('judged') == f'Episode {ended}'
         assert 'is to be forgotten' in browser.driver.find_element('css selector', '.help').text
         browser.type('g')
         browser.wait(lambda: browser.script(pressed) == ['judge-success'], 'the verdict')
         browser.part('judge-discard').click()
         browser.wait(lambda: browser.script(pressed) == ['judge-discard'], 'the other verdict')
+        browser.wait(lambda: len(browser.chart('returns')[0]) == ended - 1, 'a chart without it')
         for size in SIZES:
             browser.size(*size)
             assert browser.script(TOO_LONG) == [], f'words that do not fit at {size}'
         browser.size(1000, 700)
-        browser.wait(lambda: browser.chart('returns') == [[]], 'a chart without it')
 
     def test_nothing_went_wrong_in_the_browser(self, browser):
         assert browser.complaints() == []
