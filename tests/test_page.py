@@ -60,9 +60,10 @@ class TestASessionOnThePage:
 
     def test_keys_move_tray_and_ball_the_right_way(self, browser, human):
         for key, name, m_y, sign in ((Keys.ARROW_RIGHT, 'right', -5.0, 1), (Keys.ARROW_LEFT, 'left', 5.0, -1)):
+            # Looked at before the moment ends: without one the ball rolls to the left end, as soon as it can.
+            scene, close = browser.ball_on_screen(), self.ball_in_close_view(browser)
             browser.type(Keys.SPACE)
             human(0.0)
-            scene, close = browser.ball_on_screen(), self.ball_in_close_view(browser)
             browser.keys().key_down(key).perform()
             human(m_y)
             assert 'down' in browser.driver.find_element('css selector', f'[data-key={name}]').get_attribute('class')
