@@ -33,14 +33,32 @@ def test_a_stamp_far_ahead_counts_nothing():
 
 
 def test_a_silent_source_ends_at_zero():
-    source = MomentSource(2)
-    source.moment, source.stamp_ns = np.array([5.0, -2.0]), 1_000_000_000
-    np.testing.assert_array_equal(source.at(1_050_000_000, 0.1), [5.0, -2.0])
-    assert 0.0 < source.at(1_150_000_000, 0.1)[0] < 5.0
-    np.testing.assert_array_equal(source.at(2_000_000_000, 0.1), [0.0, 0.0])
-    np.testing.assert_array_equal(source.at(950_000_000, 0.1), [5.0, -2.0])
-    np.testing.assert_array_equal(source.at(500_000_000, 0.1), [0.0, 0.0])
+    source = MomentSource(2, 0.1)
+    source.take(np.array([5.0, -2.0]), 1_000_000_000)
+    np.testing.assert_array_equal(source.at(950_000_000), [5.0, -2.0])
+    np.testing.assert_array_equal(source.at(1_050_000_000), [5.0, -2.0])
+    assert 0.0 < source.at(1_150_000_000)[0] < 5.0
     assert source.age(1_150_000_000) == pytest.approx(0.15) and source.age(500_000_000) == pytest.approx(-0.5)
+    np.testing.assert_array_equal(source.at(2_000_000_000), [0.0, 0.0])
+
+
+@pytest.mark.parametrize('back_ms', [1, 90, 150, 1000])
+def test_a_moment_does_not_come_back_with_the_time_at_which_it_was_sent(back_ms):
+    """The robot's time is set back after the source has died, and runs on."""
+    source = MomentSource(1, 0.1)
+    source.take(np.array([5.0]), 2_000_000_000)
+    assert source.at(2_000_000_000) == 5.0
+    for ms in range(2000 - back_ms, 2500):
+        assert source.at(ms * 1_000_000) == 0.0
+    source.take(np.array([3.0]), 2_499_000_000)
+    assert source.at(2_499_000_000) == 3.0
+
+
+def test_a_moment_whose_stamp_was_far_ahead_is_forgotten():
+    source = MomentSource(1, 0.1)
+    source.take(np.array([5.0]), 2_000_000_000)
+    for ms in range(1000, 2500):
+        assert source.at(ms * 1_000_000) == 0.0
 
 
 def test_the_sum_is_limited_about_each_axis():

@@ -168,6 +168,9 @@ class TestRunningController:
         robot.now_ns -= 500_000_000
         np.testing.assert_array_equal(robot.tick(), expected(0.0))
         assert robot.used() == [0.0, 0.0, 0.0]
+        robot.now_ns += 499_000_000
+        np.testing.assert_array_equal(
+            robot.tick(), expected(0.0), err_msg='it came back with the time at which it was sent')
 
     @pytest.mark.parametrize(('fault', 'said'), [
         ({'m_y': float('nan')}, 'torque.y is nan'),
@@ -202,6 +205,9 @@ class TestRunningController:
         assert first == again
 
     def test_says_once_a_second_how_it_fares(self, robot):
+        robot.send(robot.human, 0.0)
+        robot.tick()
+        robot.now_ns += 1_000_000_000
         reports = robot.observer.listen(contract.DIAGNOSTICS)
         deadline = time.monotonic() + 60.0
         while not reports and time.monotonic() < deadline:
@@ -266,6 +272,17 @@ class TestSafety:
         torque = robot_at_rest.tick(effort=[0.0] * 7, velocity=[0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
         assert torque[1] == -1.0, 'against the motion, as fast as the rate of the torque allows'
         np.testing.assert_allclose(robot_at_rest.tick(effort=[0.0] * 7), np.zeros(7), atol=1e-9)
+        self.wait_for_silence(robot_at_rest)
+
+    def test_what_was_sent_to_a_disabled_one_before_time_was_set_back_never_counts(self, robot_at_rest):
+        sent_ns = robot_at_rest.now_ns
+        robot_at_rest.observer.spin(robot_at_rest.human.get_subscription_count)
+        robot_at_rest.send(robot_at_rest.human, 0.5)
+        robot_at_rest.now_ns -= 500_000_000
+        assert self.enable(robot_at_rest).success
+        robot_at_rest.now_ns = sent_ns
+        np.testing.assert_allclose(robot_at_rest.tick(effort=[0.0] * 7), np.zeros(7), atol=1e-9)
+        assert self.ask(robot_at_rest, 'enable', SetBool.Request(data=False)).success
         self.wait_for_silence(robot_at_rest)
 
     @pytest.mark.parametrize('how', ['service', 'topic'])

@@ -117,7 +117,7 @@ class TorqueCtrlNode:
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD, needs=self._joint_states)
         self._watchdog = Watchdog()
         self._background = Background(node)
-        self._answered_ns = 0
+        self._now_ns = self._answered_ns = 0
         self._ticks = 0
 
     def run(self, stop: Stop) -> None:
@@ -147,7 +147,7 @@ class TorqueCtrlNode:
             self.node.get_logger().error(
                 f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
             return
-        now_ns = stamp_of(message)
+        self._now_ns = now_ns = stamp_of(message)
         if not self._safety.enabled:
             self._stand_by(now_ns, *state)
         if self._safety.enabled:
@@ -172,6 +172,8 @@ class TorqueCtrlNode:
     def _stand_by(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> None:
         """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""
         self._safety.see(q)
+        for source in (self._human, self._agent):
+            source.update(now_ns)  # nobody enables what was sent before the robot's time ran back
         if self._safety.stopping_ticks:
             self._safety.stopping_ticks -= now_ns != self._answered_ns  # a repeated tick is none
             self._command.torque[:] = self._controller.damping_torque(q, qd, effort)
@@ -187,10 +189,9 @@ class TorqueCtrlNode:
 
     def _report(self) -> None:
         self._watchdog.feed()
-        now_ns = self._answered_ns
         problems = {}
         for source in (self._human, self._agent):
-            if problem := source.problem(now_ns):
+            if problem := source.problem(self._now_ns):
                 problems[source.topic_name] = problem
         if problem := self._safety.problem:
             problems[self._command_publisher.topic_name] = problem

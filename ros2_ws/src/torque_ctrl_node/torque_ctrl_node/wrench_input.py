@@ -41,11 +41,12 @@ class WrenchInput:
         self._input = Polled(node, topic)
         self._timeout = timeout
         self._axes, self._frame = axes, frame
-        self._source = MomentSource(len(axes))
+        self._source = MomentSource(len(axes), timeout)
         self.topic_name = self._input.topic_name
 
     def update(self, now_ns: int) -> None:
         """Take the newest message, if there is one. ``now_ns`` is the robot's time."""
+        self._source.follow(now_ns)
         message = self._input.take()
         if message is None:
             return
@@ -56,7 +57,7 @@ class WrenchInput:
             self._node.get_logger().error(
                 f'dropped a message on {self.topic_name}: {error}', throttle_duration_sec=1.0)
             return
-        self._source.moment, self._source.stamp_ns = moment, stamp_ns
+        self._source.take(moment, stamp_ns)
 
     def _check_age(self, age: float) -> None:
         if age > self._timeout:
@@ -67,20 +68,19 @@ class WrenchInput:
 
     def moment(self, now_ns: int) -> np.ndarray:
         """The moment that counts at ``now_ns``, (k,), N m."""
-        return self._source.at(now_ns, self._timeout)
+        return self._source.at(now_ns)
 
     def problem(self, now_ns: int) -> str:
         """What is wrong with this source, for the diagnostics; empty when nothing is."""
         if not self._source.stamp_ns:
-            return 'nothing received yet'
+            return "nothing received since the robot's time began"
         age = self._source.age(now_ns)
-        if age > self._timeout:
-            return f'silent for {age:.2f} s'
-        return f'its last stamp is {-age:.2f} s ahead' if age < -self._timeout else ''
+        return f'silent for {age:.2f} s' if age > self._timeout else ''
 
     def wait_for_stamp(self, stamp_ns: int, timeout: float) -> bool:
         """Wait up to ``timeout`` s for a wrench as new as ``stamp_ns``; whether one came."""
         deadline = time.monotonic() + timeout
+        self._source.follow(stamp_ns)
         while not -self._timeout <= self._source.age(stamp_ns) <= 0.0:
             if time.monotonic() > deadline:
                 return False

@@ -44,17 +44,35 @@ class MomentSource:
 
     Args:
         size: number of the task's axes, k.
+        timeout: age after which it is stale, s.
     """
 
-    def __init__(self, size: int):
+    def __init__(self, size: int, timeout: float):
         self.moment = np.zeros(size)
         """(k,), N m"""
         self.stamp_ns = 0
+        """0 before the first one, and after one was forgotten."""
+        self._timeout = timeout
+        self._now_ns = 0
+
+    def take(self, moment: np.ndarray, stamp_ns: int) -> None:
+        """The source sent a moment, (k,), N m."""
+        self.moment, self.stamp_ns = moment, stamp_ns
+
+    def follow(self, now_ns: int) -> None:
+        """Forget what was sent before the robot's time ran back: it would count again once that time has come.
+
+        To be called before :meth:`take`, so that what comes at ``now_ns`` is not forgotten with it.
+        """
+        if now_ns < self._now_ns or self.age(now_ns) < -self._timeout:
+            self.take(np.zeros_like(self.moment), 0)
+        self._now_ns = now_ns
 
     def age(self, now_ns: int) -> float:
         """How old it is at ``now_ns``, s; negative when its stamp is ahead."""
         return (now_ns - self.stamp_ns) * 1e-9
 
-    def at(self, now_ns: int, timeout: float) -> np.ndarray:
+    def at(self, now_ns: int) -> np.ndarray:
         """The moment that counts at ``now_ns``, (k,), N m: see :func:`freshness`."""
-        return self.moment * freshness(self.age(now_ns), timeout)
+        self.follow(now_ns)
+        return self.moment * freshness(self.age(now_ns), self._timeout)

@@ -75,7 +75,7 @@ class RobotViewNode:
         self._boxes = task.scene.boxes
         self._balls = Polled(node, contract.BALL)
         self._joints = Polled(node, contract.JOINT_STATES_THROTTLE)
-        self._wrenches = {source: (Polled(node, topic), MomentSource(len(task.axes)))
+        self._wrenches = {source: (Polled(node, topic), MomentSource(len(task.axes), STALE_AFTER))
                           for source, topic in WRENCHES.items()}
         self._markers = node.create_publisher(MARKERS.msg_type, MARKERS.name, MARKERS.qos)
         self._tf = self._tf_publisher()
@@ -141,11 +141,12 @@ class RobotViewNode:
     def _moment(self, source: str, now_ns: int) -> np.ndarray:
         """What a source asks for at the moment, (k,), N m."""
         wrenches, moment = self._wrenches[source]
+        moment.follow(now_ns)
         message = wrenches.take()
         if message is not None:
             with suppress(ValueError):
-                moment.moment, moment.stamp_ns = moment_of(message, self._axes), to_ns(message.header.stamp)
-        return moment.at(now_ns, STALE_AFTER)
+                moment.take(moment_of(message, self._axes), to_ns(message.header.stamp))
+        return moment.at(now_ns)
 
     def close(self) -> None:
         """Nothing to leave behind."""
