@@ -60,6 +60,21 @@ def test_without_an_arm_it_says_so(with_stand_in, start_node, hostname, said):
     assert said in node.log() and 'Traceback' not in node.log()
 
 
+def test_beside_another_robot_it_is_refused_and_the_other_beside_it(with_stand_in, start_node):
+    simulator = start_node('panda_sim_node')
+    simulator.wait_for_log('ready')
+    refused = start_node('panda_bridge_node', hostname='here')
+    assert refused.process.wait(60) == 2
+    assert f'/panda_sim_node (process {simulator.process.pid}) is the robot in ROS domain' in refused.log()
+    assert 'Traceback' not in refused.log()
+    assert simulator.stop() == 0
+    bridge = start_node('panda_bridge_node', hostname='here')
+    bridge.wait_for_log('ready')
+    refused = start_node('panda_sim_node')
+    assert refused.process.wait(60) == 2
+    assert f'/panda_bridge_node (process {bridge.process.pid}) is the robot in ROS domain' in refused.log()
+
+
 @pytest.mark.skipif(importlib.util.find_spec('panda_py') is None, reason='pip install panda-python==1.1.1')
 def test_the_stand_in_has_the_calls_of_the_library():
     from panda_py import Panda, controllers, libfranka

@@ -31,6 +31,7 @@ from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.joint_state_publisher import JointStatePublisher
+from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import ParameterError, declare
 from shared_control_ros.robot_inputs import TorqueInput
 from shared_control_ros.runner import Stop, run
@@ -55,6 +56,7 @@ class PandaBridgeNode:
 
     def __init__(self) -> None:
         self.node = node = Node('panda_bridge_node')
+        self._role = claim(node, 'robot')
         hostname = declare(node, 'hostname', '', "The arm's control box: host name or address.")
         self._timeout = declare(
             node, 'command_timeout', 0.1, 'Without torques for this long the control ends.', unit='s',
