@@ -161,17 +161,18 @@ class PandaSimNode:
 
     def _await_torque(self, stop: Stop) -> np.ndarray | None:
         """The torque for this tick; None when the node is to stop or was paused meanwhile."""
-        began = time.monotonic()
+        began = published = time.monotonic()
         while not (stop.requested or self._stands_still):
             message = self._commands.wait(REPEAT_AFTER)
             torque = None if message is None else self._commands.read(message, self._stamp_ns)
             if torque is not None:
                 return torque
-            if message is None:
-                waited = time.monotonic() - began
-                if waited >= STANDS_STILL_AFTER:
-                    self._stand_still(waited)
+            now = time.monotonic()
+            if message is None or now - published >= REPEAT_AFTER:  # unusable torques may come without end
+                if now - began >= STANDS_STILL_AFTER:
+                    self._stand_still(now - began)
                 self._publish()
+                published = now
         return None
 
     def _stand_still(self, waited: float) -> None:

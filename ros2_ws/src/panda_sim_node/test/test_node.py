@@ -176,6 +176,27 @@ class TestLockstepAnsweredByHand:
         assert list(states[-1].effort) == torque
 
 
+@pytest.mark.parametrize('fault', ['no torques', 'the answer to another tick'])
+def test_unusable_torques_without_end_hold_up_nothing(start_node, observer, fault):
+    states, reports = observer.listen(contract.JOINT_STATES), observer.listen(contract.DIAGNOSTICS)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    bad = Float64MultiArray(data=[float('nan')] * 7) if fault == 'no torques' else torque_command([0.0] * 7, 1)
+    node = start_node('panda_sim_node', paced=False)
+    observer.spin(lambda: states and commands.get_subscription_count() == 1)
+
+    def flood():
+        commands.publish(bad)
+        observer.spin_for(0.02)  # far less than until the tick is published again
+
+    node.wait_for_log('until the controller answers', timeout=30.0, beside=flood)
+    states.clear()
+    reports.clear()
+    while len(states) < 3 or len(reports) < 2:
+        assert node.process.poll() is None, node.log()
+        flood()
+    assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request(), beside=flood).success
+
+
 def test_free_running_goes_on_without_torques_on_its_brakes(start_node, observer):
     states, reports = observer.listen(contract.JOINT_STATES), observer.listen(contract.DIAGNOSTICS)
     start_node('panda_sim_node', mode='free_running')
