@@ -133,7 +133,7 @@ class PandaSimNode:
         return self._paused or self._rests
 
     def _between_actions(self) -> None:
-        """Requests and disturbances are looked at only here, so that episodes start at policy ticks."""
+        """Requests and disturbances are looked at here while time goes on, so that results can be repeated."""
         self._background.poll()
         self._pushes.update(self._tick)
 
@@ -176,12 +176,11 @@ class PandaSimNode:
         return None
 
     def _stand_still(self, waited: float) -> None:
-        """Without a controller the node answers, but time does not go on."""
+        """Without a controller the node answers, at whatever tick, but time does not go on."""
         self.node.get_logger().warning(
             f'no torque on {self._commands.topic_name} for {waited:.1f} s: the simulation stands still until '
             'the controller answers', throttle_duration_sec=5.0)
-        if self._tick % TICKS_PER_ACTION == 0:
-            self._between_actions()
+        self._background.poll()
         if self._diagnostics.due():
             self._report()
 
@@ -220,6 +219,7 @@ class PandaSimNode:
         ball = self._starts.next()
         self._world.reset(ball)
         self._command = None
+        self._tick += -self._tick % TICKS_PER_ACTION  # episodes start at policy ticks, also where a controller left
         response.success = True
         response.message = f'ball dropped at x = {ball[0]:.4f} m'
         return response

@@ -176,6 +176,39 @@ class TestLockstepAnsweredByHand:
         assert list(states[-1].effort) == torque
 
 
+def test_it_answers_at_whatever_tick_the_controller_has_left_it(start_node, observer):
+    states, balls = observer.listen(contract.JOINT_STATES), observer.listen(contract.BALL)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    start_node('panda_sim_node', paced=False, seed=7)
+    observer.spin(lambda: states and commands.get_subscription_count() == 1)
+
+    def newest_ns():
+        return to_ns(states[-1].header.stamp)
+
+    def answer():
+        tick = newest_ns()
+        commands.publish(torque_command(list(states[-1].effort), tick))
+        observer.spin(lambda: newest_ns() > tick)
+
+    for _ in range(7):
+        answer()
+    left_ns = newest_ns()
+    assert left_ns % 20_000_000 == 7_000_000
+    pause(observer, True)
+    pause(observer, False)
+    answer()
+    assert newest_ns() == left_ns + 1_000_000, 'time goes on where it stood'
+
+    balls.clear()
+    assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success
+    observer.spin(lambda: balls)
+    assert to_ns(balls[-1].header.stamp) == left_ns + 13_000_000, 'the next policy tick'
+    assert balls[-1].pose.pose.position.z == 0.94
+    observer.spin(lambda: newest_ns() == left_ns + 13_000_000)
+    answer()
+    assert newest_ns() == left_ns + 14_000_000
+
+
 @pytest.mark.parametrize('fault', ['no torques', 'the answer to another tick'])
 def test_unusable_torques_without_end_hold_up_nothing(start_node, observer, fault):
     states, reports = observer.listen(contract.JOINT_STATES), observer.listen(contract.DIAGNOSTICS)

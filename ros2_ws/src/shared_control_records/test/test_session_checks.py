@@ -85,6 +85,12 @@ def test_a_repeated_tick_is_no_gap(recording, tmp_path):
     assert findings(recording, tmp_path) == []
 
 
+def test_a_reset_between_two_policy_ticks_is_no_gap(recording, tmp_path):
+    for topic in (contract.JOINT_STATES, contract.EFFORT_COMMANDS):
+        recording.drop(topic, 1195, 5)  # the last of the first lesson
+    assert findings(recording, tmp_path) == []
+
+
 def test_a_restarted_simulator_is_no_gap_but_a_jump_is(recording, tmp_path):
     later = made.record([made.lesson(20, seed=3)], start_ns=made.START_NS + 9_000 * MS)
     both = made.Recording(recording.messages + later.messages)

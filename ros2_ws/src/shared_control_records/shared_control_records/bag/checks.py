@@ -65,12 +65,16 @@ def _check_topics(bag: Bag, expected: Iterable[str]) -> Iterator[str]:
 
 
 def _check_joint_states(bag: Bag) -> Iterator[str]:
-    """A tick is 1 ms after the one before, or a repetition of it, or the first of a simulator that started anew."""
+    """A tick is 1 ms after the one before, or a repetition of it, or the first of a simulator that started anew.
+
+    A simulator that is reset where its controller has left it, between two policy ticks, goes on at the next of these.
+    """
     joints = bag.ticks
     steps = np.diff(joints.stamp_ns)
     odd = np.flatnonzero((steps != TICK_NS) & (steps != 0)) + 1
     fresh = odd[(joints.stamp_ns[odd] % POLICY_NS == 0) & joints.at_rest[odd]]
-    gaps = np.setdiff1d(odd, fresh[:_restarts(bag)])
+    is_reset = (steps[fresh - 1] > 0) & (steps[fresh - 1] < POLICY_NS)
+    gaps = np.setdiff1d(odd, (*fresh[is_reset], *fresh[~is_reset][:_restarts(bag)]))
     if len(gaps):
         missing = (joints.stamp_ns[gaps] - joints.stamp_ns[gaps - 1]) / TICK_NS - 1
         lost = f'{missing.sum():.0f} ticks missing' if (missing > 0).all() else 'time runs backwards'
