@@ -21,7 +21,6 @@ at, and who opens the server to the network needs a token.
 
 import hashlib
 import secrets
-from http.cookies import CookieError, SimpleCookie
 from urllib.parse import parse_qs, urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -72,11 +71,9 @@ class Guard:
         return None
 
     def _given(self, scope: Scope, headers: Headers) -> list[str]:
-        try:
-            cookie = SimpleCookie(headers.get('cookie', '')).get(self._cookie)
-        except CookieError:
-            cookie = None
-        return _query_tokens(scope) + ([] if cookie is None else [cookie.value])
+        # Other programs on this host set cookies, too, and not all are as http.cookies wants them.
+        cookies = (part.strip().partition('=') for part in headers.get('cookie', '').split(';'))
+        return _query_tokens(scope) + [value for name, _, value in cookies if name == self._cookie]
 
     def _with_cookie(self, scope: Scope, send: Send) -> Send:
         if self._token is None or not _query_tokens(scope):

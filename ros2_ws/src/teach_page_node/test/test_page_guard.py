@@ -87,6 +87,19 @@ def test_two_servers_of_a_host_leave_each_other_their_cookies(visit):
     assert first.get('/').status_code == second.get('/').status_code == 200
 
 
+@pytest.mark.parametrize('foreign', [
+    'prefs={"theme":"dark"}', 'a[0]=1', 'user=Jörg', 'a=b c', 'x', 'secure', 'path=1', '', 'teach_page_=x'])
+@pytest.mark.parametrize('order', ['{foreign}; {own}', '{own}; {foreign}', '{foreign};{own};{foreign}'])
+def test_a_cookie_of_another_program_of_the_host_locks_nobody_out(visit, foreign, order):
+    first = visit('secret', 'laptop:8088')
+    first.get('/?token=secret')
+    (name, value), = first.cookies.items()
+    cookies = order.format(foreign=foreign, own=f'{name}={value}').encode()
+    assert visit('secret', 'laptop:8088').get('/', headers={'cookie': cookies}).text == 'the page'
+    wrong = order.format(foreign=foreign, own=f'{name}=guessed').encode()
+    assert visit('secret', 'laptop:8088').get('/', headers={'cookie': wrong}).status_code == 403
+
+
 class TestOwnToken:
     """The token of a node that is given none."""
 
