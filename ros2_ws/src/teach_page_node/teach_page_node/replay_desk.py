@@ -63,7 +63,7 @@ class ReplayDesk:
         return picture
 
     def _seek(self, seconds: float) -> None:
-        self._position = min(max(seconds, 0.0), self._recording.length)
+        self._position = float(min(max(seconds, 0.0), self._recording.length))
 
     def _jump(self, seconds: float) -> None:
         """Go there, and have what came before in the charts."""
@@ -83,8 +83,8 @@ class ReplayDesk:
 
     def do(self, command: str, value: Any) -> None:
         """See :class:`Desk`."""
-        if command == 'seek' and isinstance(value, int | float) and math.isfinite(value):
-            self._jump(float(value))
+        if command == 'seek' and isinstance(value, int | float) and -math.inf < value < math.inf:
+            self._jump(value)  # an integer may be larger than any float
         elif command == 'speed' and value in SPEEDS:
             self._speed = float(value)
         elif command == 'play' and isinstance(value, bool):

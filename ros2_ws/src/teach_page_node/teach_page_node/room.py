@@ -19,7 +19,7 @@ import json
 import logging
 from typing import Any
 
-from fastapi import WebSocket, WebSocketDisconnect
+from fastapi import WebSocket
 from shared_control.keys import count_buttons
 from shared_control.sticks import DIRECTIONS
 
@@ -96,10 +96,8 @@ class Room:
             self._tell_roles()
         sender = asyncio.create_task(visitor.serve())
         try:
-            async for text in socket.iter_text():
-                self._hear(visitor, text)
-        except WebSocketDisconnect:
-            pass
+            while (message := await socket.receive())['type'] == 'websocket.receive':
+                self._hear(visitor, message.get('text') or message.get('bytes') or '')
         finally:
             sender.cancel()
             self._leave(visitor)
@@ -135,8 +133,8 @@ class Room:
             visitor.tell({'role': {'teaches': visitor is self._teacher, 'seat_is_free': self._teacher is None,
                                    'watchers': len(self._visitors) - (self._teacher is not None)}})
 
-    def _hear(self, visitor: Visitor, text: str) -> None:
-        """What a page says.
+    def _hear(self, visitor: Visitor, text: str | bytes) -> None:
+        """What a page says; it is bytes when the page sent a binary message.
 
         That is ``{"keys": [0, 1, 0]}``, with ``"axes": [0.5, 0.0]`` when there is a stick, ``{"let_go": true}`` or
         ``{"do": command, "value": ...}``.

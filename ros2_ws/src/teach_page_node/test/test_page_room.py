@@ -108,6 +108,16 @@ def test_what_makes_no_sense_is_dropped(client, desk, text, caplog):
     assert 'dropped a message' in caplog.text
 
 
+@pytest.mark.parametrize('content', [b'', b'\xff\x00', b'no json', b'{"keys": [1, 0]}'])
+def test_a_binary_message_that_makes_no_sense_is_dropped(client, desk, content, caplog):
+    with client.websocket_connect('/live') as page:
+        role(page)
+        page.send_bytes(content)
+        page.send_json({'keys': [0, 0, 0]})
+    assert desk.notes == [[0, 0, 0], 'let go']
+    assert 'dropped a message' in caplog.text
+
+
 def test_what_is_nested_without_end_ends_nothing(client, desk):
     with client.websocket_connect('/live') as page:
         assert role(page)['teaches']
