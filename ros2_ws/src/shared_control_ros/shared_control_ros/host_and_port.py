@@ -16,10 +16,14 @@
 
 import argparse
 
+HIGHEST_PORT = 65535
+
 
 def host_and_port(text: str) -> tuple[str, int]:
-    """``HOST:PORT``, for ``argparse``."""
+    """``HOST:PORT``, for ``argparse``; port 0 is any that is free."""
     host, _, port = text.rpartition(':')
     if not host or not port.isdecimal():
         raise argparse.ArgumentTypeError(f'expected HOST:PORT, got {text!r}')
+    if int(port) > HIGHEST_PORT:
+        raise argparse.ArgumentTypeError(f'a port is at most {HIGHEST_PORT}, got {text!r}')
     return host.strip('[]'), int(port)
