@@ -17,6 +17,7 @@
 import csv
 import hashlib
 import json
+import re
 import signal
 import socket
 import subprocess
@@ -200,10 +201,17 @@ class Visitor:
 
     def send(self, **fields):
         """Fill in the form that is shown; what comes then."""
-        shown = self.get()
-        key = shown.partition('name="key" value="')[2].partition('"')[0]
+        return self.send_in_order(*fields.items())
+
+    def send_in_order(self, *fields):
+        """The same, field by field, the form's own first: a browser sends as many of a name as there are."""
+        key = self.get().partition('name="key" value="')[2].partition('"')[0]
         return urllib.request.urlopen(
-            self._address, urllib.parse.urlencode({'key': key, **fields}).encode(), timeout=60).read().decode()
+            self._address, urllib.parse.urlencode([('key', key), *fields]).encode(), timeout=60).read().decode()
+
+    def fields(self):
+        """The names of the fields for text that are shown, in their order."""
+        return re.findall('<textarea name="([^"]*)"', self.get())
 
 
 @pytest.fixture
@@ -254,9 +262,25 @@ def test_a_page_asks_for_the_workload(asked):
 def test_a_page_asks_the_questions_of_the_plan(asked):
     questions = {'age': Question(ask='Your age?', choices=['18 to 30', 'older']), 'comment': Question(ask='And?')}
     visitor, answer = asked('answer', 'Before you begin', questions)
-    assert 'Your age?' in visitor.send(age='12', comment='')
-    visitor.send(age='older', comment=' fine ')
+    assert 'Your age?' in visitor.send(answer_0='12', answer_1='')
+    visitor.send(answer_0='older', answer_1=' fine ')
     assert answer() == {'age': 'older', 'comment': 'fine'}
+
+
+def test_questions_may_have_any_name(asked):
+    names = ['key', 'choice', 'answer_0', 'querySelectorAll', '', 'two\nlines', '"><b>']
+    visitor, answer = asked('answer', 'Before you begin', {name: Question(ask='What?') for name in names})
+    fields = visitor.fields()
+    assert len(set(fields)) == len(names) and all(fields)
+    assert 'Thank you' in visitor.send_in_order(*zip(fields, map(str, range(len(names))), strict=True))
+    assert answer() == {name: str(number) for number, name in enumerate(names)}
+
+
+def test_a_choice_may_begin_with_a_space(asked):
+    question = Question(ask='Which hand?', choices=[' left', 'right '])
+    visitor, answer = asked('answer', 'Before you begin', {'hand': question})
+    visitor.send(answer_0=' left')
+    assert answer() == {'hand': ' left'}
 
 
 def test_the_last_page_ends_by_itself_once_it_is_shown(asked):

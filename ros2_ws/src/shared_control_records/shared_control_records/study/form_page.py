@@ -88,7 +88,7 @@ class FormPage:
 
     def answer(self, text: str, questions: Mapping[str, Question]) -> dict[str, str]:
         """See :class:`.asking.Asker`."""
-        fields = ''.join(_field(name, question) for name, question in questions.items())
+        fields = ''.join(_field(_field_name(number), question) for number, question in enumerate(questions.values()))
         return self._ask(text, fields, _SEND, lambda given: _answered(given, questions))
 
     def tell(self, text: str) -> None:
@@ -182,8 +182,13 @@ def _page(kind: str, title: str, text: str, fields: str = '', buttons: str = '',
 _SEND = '<div class="choices"><button>Go on</button></div>'
 
 
+def _field_name(number: int) -> str:
+    """The field of a question of the plan, by its place: plans may name a question like a field of the form."""
+    return f'answer_{number}'
+
+
 def _field(name: str, question: Question) -> str:
-    name, ask = html.escape(name), html.escape(question.ask)
+    ask = html.escape(question.ask)
     if not question.choices:
         return f'<label class="text">{ask}<textarea name="{name}" rows="3"></textarea></label>'
     choices = ''.join(f'<label><input type="radio" name="{name}" value="{html.escape(choice)}" required> '
@@ -200,6 +205,10 @@ def _rated(given: dict[str, str], scales: Mapping[str, Scale]) -> dict[str, floa
 
 
 def _answered(given: dict[str, str], questions: Mapping[str, Question]) -> dict[str, str] | None:
-    answers = {name: given.get(name, '').strip() for name in questions}
-    known = all(not question.choices or answers[name] in question.choices for name, question in questions.items())
-    return answers if known else None
+    answers = {}
+    for number, (name, question) in enumerate(questions.items()):
+        answer = given.get(_field_name(number), '')
+        if question.choices and answer not in question.choices:
+            return None
+        answers[name] = answer if question.choices else answer.strip()
+    return answers
