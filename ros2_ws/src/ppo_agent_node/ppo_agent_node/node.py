@@ -295,6 +295,7 @@ class PpoAgentNode(Callbacks):
         self._diagnostics.skip()
         self._training.enter(episode.phase)
         self._training.episode(episode.number)
+        self._training.time_left(self._longest(episode))  # screens take it for the episode's length
 
     def stepped(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
@@ -302,10 +303,13 @@ class PpoAgentNode(Callbacks):
             raise PlantInterrupted('the person starts it over')
         self._diagnostics.tick()
         if len(episode) % STEPS_PER_PROGRESS == 0:
-            length = self._episode_seconds if episode.phase == 'teach' else self._learner.task.test_seconds
-            self._training.progress(length - len(episode) * POLICY_PERIOD, episode.human_share)
+            self._training.progress(self._longest(episode) - len(episode) * POLICY_PERIOD, episode.human_share)
         if self._table is not None and episode.phase == 'teach' and len(episode) % STEPS_PER_NOTE == 0:
             self._table.under_way(episode)
+
+    def _longest(self, episode: Episode) -> float:
+        """How long an episode lasts at the most, s."""
+        return self._episode_seconds if episode.phase == 'teach' else self._learner.task.test_seconds
 
     def learning_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""

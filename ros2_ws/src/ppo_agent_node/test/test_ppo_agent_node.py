@@ -62,7 +62,8 @@ def test_teaches_tests_and_keeps_everything(graph, start_node, observer, phases,
     assert [m.data for m in listened[contract.EPISODE.name]] == [1, 1]
     assert len(listened[contract.EPISODE_RETURN.name]) == 2
     assert 0.0 <= listened[contract.SUCCESS.name][0].data <= 1.0
-    assert max(m.data for m in listened[contract.TIME_LEFT.name]) < 10.0
+    left = [m.data for m in listened[contract.TIME_LEFT.name]]
+    assert left[:2] == pytest.approx([4.0, 3.9]) and max(left) == 10.0, 'each episode begins with its length'
     wrenches = listened[contract.AGENT_WRENCH.name]
     assert {m.header.frame_id for m in wrenches} == {contract.BASE_FRAME}
     assert all(m.header.stamp.nanosec % 10_000_000 == 0 for m in wrenches)

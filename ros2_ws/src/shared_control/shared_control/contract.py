@@ -119,7 +119,7 @@ PHASE = Topic(
     '`practice`, `teach`, `learn`, `test`, `wait`, `done`', latched=True)
 TIME_LEFT = Topic(
     'training/time_left', 'std_msgs/msg/Float64', 1, 'agent', '', '10 Hz',
-    's, of the episode; in `learn` and `wait` until the next one begins', latched=True)
+    's, of the episode, at its begin all of it; in `learn` and `wait` until the next one begins', latched=True)
 EPISODE_RETURN = Topic(
     'training/episode_return', 'std_msgs/msg/Float64', 100, 'agent', '', 'end of an episode',
     'sum of the unscaled reward', latched=True)

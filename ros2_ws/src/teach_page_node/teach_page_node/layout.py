@@ -93,8 +93,7 @@ def _numbers(task: Task) -> dict[str, Any]:
             'axes': list(task.axes), 'keys': [key.name.lower() for key in list(Key)[:count_buttons(task.keys)]],
             'pushes': {key.name.lower(): [axis, sign] for key, (axis, sign) in task.keys.items()},
             'keystroke': KEYSTROKE, 'goal': list(tray.goal), 'moment_limit': float(task.limit.max()),
-            'chart_seconds': CHART_SECONDS,
-            'episode_seconds': {'teach': task.episode_seconds, 'test': task.test_seconds}}
+            'chart_seconds': CHART_SECONDS}
 
 
 def _words(task: Task, showing: Showing) -> dict[str, Any]:

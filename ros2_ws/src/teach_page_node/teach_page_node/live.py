@@ -83,7 +83,7 @@ class LiveDesk:
         self._lesson.update()
         now = time.monotonic()
         scene = self._scene
-        scene.phase, scene.episode = self._lesson.phase, self._lesson.episode
+        scene.phase, scene.episode, scene.began_ns = self._lesson.phase, self._lesson.episode, self._lesson.began_ns
         self._follow(scene)
         full = self.showing.feedback == 'full'
         self._hear_keys(now)
@@ -92,7 +92,8 @@ class LiveDesk:
         return Picture(
             q=scene.q, ball=scene.ball, ball_on_tray=scene.ball_on_tray, pitch=scene.pitch, tilt=scene.tilt,
             asked=self._human.update(now), parts=scene.parts if full else None,
-            phase=scene.phase, episode=scene.episode, time_left=scene.time_left, rests_left=scene.rests_left,
+            phase=scene.phase, episode=scene.episode, time_left=scene.time_left,
+            episode_seconds=scene.episode_seconds, rests_left=scene.rests_left,
             next_in=scene.next_in,
             outcome=None if self.showing.feedback == 'none' else scene.outcome,
             ended=scene.ended, verdict=scene.verdict,

@@ -50,6 +50,8 @@ class Picture:
     episode: int | None = None
     time_left: float | None = None
     """What is left of the episode, s."""
+    episode_seconds: float | None = None
+    """The longest that it lasts, s."""
     rests_left: int = 0
     """How often the ball still has to be brought to rest before the practice may end."""
     next_in: float | None = None
@@ -94,7 +96,8 @@ class Picture:
             'outcome': None if self.outcome is None else asdict(self.outcome),
             'ended': self.ended, 'verdict': self.verdict,
             'ends_teaching': self.ends_teaching, 'ending': self.ending, 'trace': self.trace,
-            'time_left': _rounded(self.time_left), 'share': _rounded(self.human_share),
+            'time_left': _rounded(self.time_left), 'episode_seconds': _rounded(self.episode_seconds),
+            'share': _rounded(self.human_share),
             'success': _rounded(self.success), 'keys': self.keys, 'hand': self.hand,
             'paused': self.paused, 'silent_for': _rounded(self.silent_for),
             'notice': self.notice, 'time': _rounded(self.time), 'replay': self.replay}

@@ -24,7 +24,7 @@ from shared_control.verdict import Verdict, episode_key
 from shared_control_records.bag.reader import Bag, BagReadError
 from shared_control_records.bag.recorded import Series
 from shared_control_records.bag.verdicts import last_verdicts
-from shared_control_ros.watching.outcome import Outcome, outcome_of
+from shared_control_ros.watching.outcome import FirstLeft, Outcome, episode_length, outcome_of
 from shared_control_ros.watching.scene import Parts
 
 from .history import History
@@ -74,7 +74,8 @@ class Recording:
             q=q, ball=ball, ball_on_tray=rotation.T @ (ball - origin), pitch=pitch(rotation),
             tilt=math.acos(min(float(rotation[2, 2]), 1.0)),
             parts=self._parts(now_ns), phase=phase, episode=_latest(training[contract.EPISODE], now_ns),
-            time_left=_latest(training[contract.TIME_LEFT], now_ns), outcome=self._outcome(phase, now_ns),
+            time_left=_latest(training[contract.TIME_LEFT], now_ns),
+            episode_seconds=self._episode_seconds(phase, now_ns), outcome=self._outcome(phase, now_ns),
             human_share=_latest(training[contract.HUMAN_SHARE], now_ns),
             success=_latest(training[contract.SUCCESS], now_ns), keys=keys, hand=hand, time=seconds,
             history=self._history(now_ns))
@@ -137,7 +138,21 @@ class Recording:
         q = self._bag.joint_states.q[_before(self._received, ended_ns) or 0]
         origin, rotation = self._model.tray_pose(q)
         on_tray = rotation.T @ (self._ball(ended_ns) - origin)
-        return outcome_of(self.task, lasted, _latest(training[contract.TIME_LEFT], ended_ns), on_tray.tolist())
+        length = self._episode_seconds(lasted, ended_ns)
+        return outcome_of(self.task, length, _latest(training[contract.TIME_LEFT], ended_ns), on_tray.tolist())
+
+    def _episode_seconds(self, phase: str | None, now_ns: int) -> float:
+        """The longest that the episode lasts, s."""
+        training = self._bag.training
+        begin = _before(training[contract.EPISODE].received_ns, now_ns)
+        first_left = None
+        if begin is not None:
+            begin_ns = training[contract.EPISODE].received_ns[begin]
+            times_ns, left = training[contract.TIME_LEFT].received_ns, training[contract.TIME_LEFT].values
+            index = int(np.searchsorted(times_ns, begin_ns))
+            if index < len(times_ns) and times_ns[index] <= now_ns:
+                first_left = FirstLeft((times_ns[index] - begin_ns) * 1e-9, float(left[index]))
+        return episode_length(self.task, phase, first_left)
 
     def _keys(self, now_ns: int) -> tuple[list[int], str]:
         """Keys that are lit, and the source of the latest press."""

@@ -42,6 +42,19 @@ def test_a_picture_is_what_was_recorded(bag):
     assert picture.message()['q'] == [round(angle, 4) for angle in picture.q.tolist()]
 
 
+@pytest.mark.parametrize(('last', 'words'), [(0.0, 'The ball was kept for 2 s'), (1.0, 'The ball fell after 1 s')])
+def test_the_outcome_tells_the_length_of_the_episode(tmp_path, last, words):
+    made = record([lesson(), lesson()])
+    for topic in (contract.PHASE, contract.EPISODE):
+        made.drop(topic, 1, 1)
+    made.add(contract.PHASE, START_NS + 2_000_000_000, message(contract.PHASE.type, data='learn'))
+    for seconds, left in ((0.001, 2.0), (0.1, 1.9), (1.9, last), (2.1, 2.9)):
+        made.add(contract.TIME_LEFT, START_NS + round(seconds * 1e9), message(contract.TIME_LEFT.type, data=left))
+    recording = Recording(read_bag(made.write(tmp_path / 'bag')))
+    assert recording.picture(1.0).message()['episode_seconds'] == 2.0
+    assert recording.picture(3.0).outcome.words.startswith(words)
+
+
 def test_verdicts_are_at_the_marks_and_what_is_discarded_leaves_the_chart(tmp_path):
     recorded = record([lesson(seed=seed) for seed in (1, 2, 3)])
     for seconds, key, value in ((2.1, 'teach 1', ''), (2.5, 'teach 1', 'discard'), (4.1, 'teach 2', ''),

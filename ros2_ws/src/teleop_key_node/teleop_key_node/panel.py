@@ -159,7 +159,7 @@ class Panel:
             self._restarts = lesson.restarts
             scene.returns.clear()
             scene.discarded.clear()
-        scene.phase, scene.episode = lesson.phase, lesson.episode
+        scene.phase, scene.episode, scene.began_ns = lesson.phase, lesson.episode, lesson.began_ns
         self._observer.update(scene)
         self._judge.update(scene)
         self._notice_resumption()

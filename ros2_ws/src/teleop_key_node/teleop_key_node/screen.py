@@ -86,8 +86,7 @@ def _title(scene: Scene, width: int, unicode: bool) -> str:
 
 
 def _time_bar(scene: Scene, left: float, unicode: bool) -> str:
-    length = scene.task.test_seconds if scene.phase == 'test' else scene.task.episode_seconds
-    full = round(min(max(left / length, 0.0), 1.0) * _TIME_CELLS)
+    full = round(min(max(left / scene.episode_seconds, 0.0), 1.0) * _TIME_CELLS)
     done, rest = ('█', '░') if unicode else ('#', '.')
     return done * full + rest * (_TIME_CELLS - full)
 

@@ -33,7 +33,7 @@ SCENE = Scene(
     phase='teach', episode=3, time_left=9.4, returns=[-5000.0, -200.0, 40.0], success=0.95)
 
 
-FELL = outcome_of(Balance(), 'teach', 7.0, (0.1, 0.0, 0.021))
+FELL = outcome_of(Balance(), 15.0, 7.0, (0.1, 0.0, 0.021))
 
 
 def line_with(lines: list[str], text: str) -> str:

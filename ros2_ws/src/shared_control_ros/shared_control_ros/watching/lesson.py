@@ -30,6 +30,8 @@ class Lesson:
         self.phase: str | None = None
         """None: nobody teaches a robot."""
         self.episode: int | None = None
+        self.began_ns = 0
+        """When the agent published the newest of both, ns of its clock of the day."""
         self.restarts = 0
         """How often the count of episodes has begun anew."""
 
@@ -41,9 +43,12 @@ class Lesson:
     def update(self) -> bool:
         """Take what was published; whether a new episode or phase has begun."""
         before = self.phase, self.episode
-        while (message := self._phases.take()) is not None:
-            self.phase = message.data
-        while (message := self._episodes.take()) is not None:
+        published_ns: list[int] = []
+        while (taken := self._phases.take_with_info()) is not None:
+            self.phase = taken[0].data
+            published_ns.append(taken[1]['source_timestamp'])
+        while (taken := self._episodes.take_with_info()) is not None:
+            message, info = taken
             if message.data < 0:
                 self._log.error(
                     f'dropped a message on {self._episodes.topic_name}: there is no episode {message.data}',
@@ -52,6 +57,8 @@ class Lesson:
             if self.episode is not None and message.data < self.episode:
                 self.restarts += 1
             self.episode = message.data
+            published_ns.append(info['source_timestamp'])
+        self.began_ns = max(published_ns, default=self.began_ns)
         return (self.phase, self.episode) != before
 
     def forget_if_over(self) -> bool:

@@ -16,6 +16,7 @@
 
 import math
 import time
+from collections import deque
 
 import numpy as np
 from nav_msgs.msg import Odometry
@@ -32,13 +33,15 @@ from ..fast_loop import Polled
 from ..joints import joint_positions
 from ..stamps import to_ns
 from ..wrenches import moment_of
-from .outcome import outcome_of
+from .outcome import FirstLeft, outcome_of
 from .scene import Moments, Parts, Scene
 
 EPISODES = ('teach', 'test')
 """Phases that are episodes."""
 SILENT_AFTER = 0.5
 """A topic is silent when it brings nothing new for this long, s of the wall clock."""
+_COUNTED = 100
+"""So much of a countdown is kept: ten seconds of it, for a screen that is slow or was suspended."""
 
 _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 """A screen that is slow or suspended asks nobody to send again."""
@@ -54,7 +57,9 @@ class Observer:
         self._ball = Polled(node, contract.BALL, qos_profile=_NEWEST)
         self._parts = AppliedParts(node, task)
         latest = contract.qos_latched(1)
-        self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=latest)
+        self._time_left = Polled(node, contract.TIME_LEFT, qos_profile=contract.qos_latched(_COUNTED))
+        self._countdown: deque[tuple[int, float]] = deque(maxlen=_COUNTED)
+        """When, ns, the agent said that how much is left, s: of this phase, and of the next if that is known late."""
         self._share = Polled(node, contract.HUMAN_SHARE, qos_profile=latest)
         self._success = Polled(node, contract.SUCCESS, qos_profile=latest)
         self._rests_left = Polled(node, contract.RESTS_LEFT, qos_profile=latest)
@@ -62,7 +67,7 @@ class Observer:
         self._returns = Polled(node, contract.EPISODE_RETURN, qos_profile=contract.qos_latched())
         self._verdicts = Polled(node, contract.VERDICT, qos_profile=contract.qos_latched())
         self._task = task
-        self._episode_phase: str | None = None
+        self._length = task.episode_seconds
         self._begun: tuple[str | None, int | None] = None, None
         self._stamp_ns = -1
         self._moved_at = -math.inf
@@ -97,7 +102,7 @@ class Observer:
                 scene.returns.append(message.data)
                 scene.verdict = Verdict.NONE
                 scene.outcome = outcome_of(
-                    self._task, self._episode_phase, scene.time_left,
+                    self._task, self._length, scene.time_left,
                     None if scene.ball_on_tray is None else scene.ball_on_tray.tolist())
         self._read_verdicts(scene)
 
@@ -113,16 +118,35 @@ class Observer:
             scene.discarded = scene.discarded - {last} | ({last} if scene.verdict is Verdict.DISCARD else set())
 
     def _read_time_left(self, scene: Scene) -> None:
-        """The topic means the episode while there is one, and the break otherwise."""
+        """The topic means the episode while there is one, and the break otherwise.
+
+        Topics are heard one after the other: what was said of which is known by when it was said.
+        """
+        while (taken := self._time_left.take_with_info()) is not None:
+            if math.isfinite(taken[0].data):
+                self._countdown.append((taken[1]['source_timestamp'], taken[0].data))
         if (scene.phase, scene.episode) != self._begun:
+            while self._countdown and self._countdown[0][0] < scene.began_ns:
+                _, left = self._countdown.popleft()
+                if self._begun[0] in EPISODES:
+                    scene.time_left = left
             self._begun = scene.phase, scene.episode
             scene.next_in = None
             if scene.phase in EPISODES:
-                self._episode_phase, scene.outcome, scene.time_left = scene.phase, None, None
+                scene.outcome = scene.time_left = scene.first_left = None
+        if self._countdown:
+            self._count_down(scene)
         if scene.phase in EPISODES:
-            scene.time_left = self._latest(self._time_left, scene.time_left)
-        else:
-            scene.next_in = self._latest(self._time_left, scene.next_in)
+            self._length = scene.episode_seconds
+
+    def _count_down(self, scene: Scene) -> None:
+        (first_ns, first), (_, newest) = self._countdown[0], self._countdown[-1]
+        if scene.phase not in EPISODES:
+            scene.next_in = newest
+            return
+        scene.time_left = newest
+        if scene.first_left is None:
+            scene.first_left = FirstLeft((first_ns - scene.began_ns) * 1e-9, first)
 
     def _read_joints(self, joints: JointState, scene: Scene, now: float) -> None:
         try:

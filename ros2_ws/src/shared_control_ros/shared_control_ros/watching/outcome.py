@@ -17,11 +17,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from shared_control.tasks.task import Task
 
 _LAST = 0.25
 """Progress is told every 0.1 s: with as much of its time left an episode has come to its end, s."""
+_FIRST = 0.5
+"""What is told so soon after an episode's begin is its length: at once, and every 0.1 s from then on, s."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,27 @@ class Outcome:
     """A short sentence."""
 
 
+class FirstLeft(NamedTuple):
+    """The first that was heard of an episode's time left."""
+
+    after: float
+    """The episode's begin, s."""
+    seconds: float
+    """What was left."""
+
+
+def episode_length(task: Task, phase: str | None, first_left: FirstLeft | None) -> float:
+    """The longest that an episode lasts, s: as the agent said, or as the task has it when its begin was not heard.
+
+    Args:
+        phase: ``teach`` or ``test``.
+        first_left: None: nothing was heard.
+    """
+    if first_left is not None and first_left.after <= _FIRST and first_left.seconds > 0.0:
+        return first_left.seconds
+    return task.test_seconds if phase == 'test' else task.episode_seconds
+
+
 def has_left(task: Task, on_tray: Sequence[float]) -> bool:
     """Whether a ball at ``on_tray``, (3,), m, in the tray's frame, is no longer on the tray."""
     along, across, above = on_tray
@@ -42,15 +66,14 @@ def has_left(task: Task, on_tray: Sequence[float]) -> bool:
     return above < 0.0 or beside or abs(along) > scene.half_length + scene.ball.radius
 
 
-def outcome_of(task: Task, phase: str | None, time_left: float | None, on_tray: Sequence[float] | None) -> Outcome:
+def outcome_of(task: Task, length: float, time_left: float | None, on_tray: Sequence[float] | None) -> Outcome:
     """How the episode ended of which this was seen last.
 
     Args:
-        phase: ``teach`` or ``test``.
+        length: of the episode that comes to its end, s; see :func:`episode_length`.
         time_left: of the episode, s.
         on_tray: where the ball was, (3,), m, in the tray's frame.
     """
-    length = task.test_seconds if phase == 'test' else task.episode_seconds
     left = 0.0 if time_left is None else time_left
     if left > _LAST or (on_tray is not None and has_left(task, on_tray)):
         return Outcome(False, f'The ball fell after {max(length - left, 0.0):.0f} s.')

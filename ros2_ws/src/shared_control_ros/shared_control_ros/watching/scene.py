@@ -24,7 +24,7 @@ from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
 
-from .outcome import Outcome, has_left
+from .outcome import FirstLeft, Outcome, episode_length, has_left
 
 Moments = tuple[float, ...]
 
@@ -69,8 +69,12 @@ class Scene:
     phase: str | None = None
     """``practice``, ``teach``, ``learn``, ``test``, ``wait``, ``done``; None: nobody has said it (yet)."""
     episode: int | None = None
+    began_ns: int = 0
+    """When the agent said that phase and episode begin, ns of its clock of the day."""
     time_left: float | None = None
     """What is left of the episode, s."""
+    first_left: FirstLeft | None = None
+    """What was said of that first."""
     rests_left: int = 0
     """How often the ball still has to be brought to rest before the practice may end."""
     next_in: float | None = None
@@ -107,6 +111,11 @@ class Scene:
     def counted_returns(self) -> list[float]:
         """Returns of the episodes that were not discarded."""
         return [value for index, value in enumerate(self.returns) if index not in self.discarded]
+
+    @property
+    def episode_seconds(self) -> float:
+        """The longest that the episode lasts, s."""
+        return episode_length(self.task, self.phase, self.first_left)
 
     @property
     def tray(self) -> TaskScene:

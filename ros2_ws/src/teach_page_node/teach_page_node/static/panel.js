@@ -32,7 +32,7 @@ export function showPicture(picture, isReplay) {
   const left = isEpisode && !isStuck(picture) && picture.time_left !== null ? Math.max(picture.time_left, 0) : null;
   setText("time-left", left === null ? "" : `${left.toFixed(0)} s left`);
   part("time-bar").parentElement.hidden = left === null;
-  part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / window.teachPage.episode_seconds[phase])}%`;
+  part("time-bar").style.width = left === null ? "0" : `${Math.min(100, (100 * left) / picture.episode_seconds)}%`;
   if (isReplay && picture.success !== null && !window.teachPage.tested) setText("success", `${Math.round(100 * picture.success)} % ${window.teachPage.axes.length > 1 ? "at the goal" : "kept in the middle"}`);
   show("score", isReplay && part("success").textContent !== "");
   setText("human-name", picture.hand === "tutor" ? "simulated tutor" : role.teaches && !isReplay ? "you" : "human");
