@@ -15,6 +15,7 @@
 """A recorded session as pictures."""
 
 import math
+from functools import cache
 
 import numpy as np
 from shared_control import contract
@@ -22,7 +23,8 @@ from shared_control.keys import count_buttons
 from shared_control.robot.model import RobotModel, pitch
 from shared_control.verdict import Verdict, episode_key
 from shared_control_records.bag.reader import Bag, BagReadError
-from shared_control_records.bag.recorded import Series
+from shared_control_records.bag.recorded import Series, Wrenches
+from shared_control_records.bag.runs import run_window
 from shared_control_records.bag.verdicts import last_verdicts
 from shared_control_ros.watching.outcome import FirstLeft, Outcome, episode_length, outcome_of
 from shared_control_ros.watching.scene import Parts
@@ -54,6 +56,9 @@ class Recording:
         self._received = bag.joint_states.received_ns
         steps = np.minimum(np.diff(self._received, prepend=self._received[0]) * 1e-9, LONGEST_STILL)
         self._elapsed = np.cumsum(steps)
+        self._run = 0, 0
+        """The recorder's time, ns, within which a moment was looked for last; see :func:`run_window`."""
+        self._between = cache(Wrenches.between)
         self._press_ns = np.array([press.received_ns for press in bag.presses], np.int64)
 
     @property
@@ -117,9 +122,12 @@ class Recording:
         index = _before(bag.applied.received_ns, now_ns)
         if index is None or now_ns - bag.applied.received_ns[index] > STALE_AFTER * 1e9:
             return None
-        stamp_ns = bag.applied.stamp_ns[index]
+        received_ns, stamp_ns = int(bag.applied.received_ns[index]), bag.applied.stamp_ns[index]
+        if not self._run[0] <= received_ns < self._run[1]:
+            self._run = run_window(bag, received_ns)
         moments = []
-        for wrenches in (bag.human_applied, bag.agent_applied):
+        for all_wrenches in (bag.human_applied, bag.agent_applied):
+            wrenches = self._between(all_wrenches, self._run)
             other = int(np.searchsorted(wrenches.stamp_ns, stamp_ns, 'right')) - 1
             if other < 0:
                 return None

@@ -17,6 +17,7 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from shared_control import contract
 from shared_control_records.bag.reader import BagReadError, read_bag
@@ -88,6 +89,22 @@ def test_a_gap_between_two_runs_is_shortened(tmp_path):
     assert recording.length == pytest.approx(6.0, abs=0.03)
     assert recording.picture(3.0).parts is None, 'nobody spoke in the gap'
     assert recording.picture(5.0).parts is not None
+
+
+def test_moments_shown_together_are_of_one_run_when_the_time_of_the_robot_was_set_back(tmp_path):
+    made = record([lesson(150, seed=1)])
+    later_ns = 4_000_000_000
+    made.messages += [(topic, received_ns + later_ns, content)
+                      for topic, received_ns, content in record([lesson(100, seed=2)]).messages]
+    recording = Recording(read_bag(made.write(tmp_path / 'bag')))
+    second = lesson(100, seed=2)
+    shown = [(human[0] + agent[0], applied[0], human[0]) for human, agent, applied in filter(None, (
+        recording.picture(seconds).parts for seconds in np.arange(0.05, recording.length, 0.05)))]
+    assert len(shown) > 80
+    assert all(sum_of_both == pytest.approx(applied) for sum_of_both, applied, _ in shown)
+    assert shown[-1][2] == second.m_y_human[-1]
+    rows = [row for row in recording.trace(recording.length, 1.5) if row[1] is not None]
+    assert rows and all(human + agent == pytest.approx(applied, abs=1e-3) for _, human, agent, applied in rows)
 
 
 def test_a_bag_without_a_ball_is_refused(tmp_path):
