@@ -14,6 +14,7 @@
 
 """A gamepad or the like, as its driver publishes it on /joy: says on /human/keys what its axes and buttons mean."""
 
+import time
 from collections import deque
 
 from rclpy.node import Node
@@ -24,6 +25,7 @@ from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.parameters import ParameterError, declare
 
+from .shared_names import SharedNames, words_of_shared
 from .sources import REMEMBERED
 
 NAME = 'joy'
@@ -54,15 +56,21 @@ class Joystick:
             self._mapping = None if as_it_is else JoyMapping(buttons, axes, scale, rest)
         except ValueError as error:
             raise ParameterError(f'parameter joy_{error}') from error
+        self._names = SharedNames()
         self._heard = Polled(node, contract.JOY, depth=50)
         self._publisher = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
         self._known: deque[str] = deque(maxlen=REMEMBERED)
 
     def poll(self) -> None:
         """Pass on what has come."""
-        while (joy := self._heard.take()) is not None:
+        while (taken := self._heard.take_with_info()) is not None:
+            joy, info = taken
             if joy.header.frame_id in (*self._reserved, ''):
                 joy.header.frame_id = NAME
+            if self._names.is_shared(joy.header.frame_id, info['publication_sequence_number'], time.monotonic()):
+                self._node.get_logger().error(
+                    words_of_shared(joy.header.frame_id, self._heard.topic_name), throttle_duration_sec=1.0)
+                continue
             if joy.header.frame_id not in self._known:
                 self._known.append(joy.header.frame_id)
                 self._node.get_logger().info(

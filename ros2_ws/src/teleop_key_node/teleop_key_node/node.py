@@ -21,6 +21,8 @@ away, Enter ends the practice, q the teaching, p pauses, Ctrl-C quits; g says th
 discards it. Each press adds a notch of push, which stays. The left key moves the ball to the left of the picture.
 """
 
+import time
+
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -43,6 +45,7 @@ from shared_control_ros.wrenches import base_wrench, set_moment
 
 from .joystick import Joystick, declare_stick
 from .panel import Panel
+from .shared_names import SharedNames, words_of_shared
 from .sources import Sources
 from .terminal import NoTerminal, Terminal
 from .ticker import Ticker
@@ -100,6 +103,7 @@ class TeleopKeyNode:
         stick = declare_stick(node)
         self._joystick = Joystick(node, OUR_SOURCES, as_it_is=self._device != KEYS_DEVICE)
         self._keys = Polled(node, contract.KEYS, depth=50)
+        self._names = SharedNames()
         self._lesson = Lesson(node)
         device: Device = (
             KeyDevice(self._task, self._keystroke, self._moment_limit, *stick) if self._device == KEYS_DEVICE
@@ -170,8 +174,14 @@ class TeleopKeyNode:
             self._sources.is_active = self._lesson.keys_count
 
     def _hear_keys(self, now_ns: int) -> None:
-        while (joy := self._keys.take()) is not None:
+        while (taken := self._keys.take_with_info()) is not None:
+            joy, info = taken
             source = joy.header.frame_id
+            if self._names.is_shared(source, info['publication_sequence_number'], time.monotonic()):
+                text = words_of_shared(source, self._keys.topic_name)
+                self.node.get_logger().error(text, throttle_duration_sec=1.0)
+                self._tell(text)
+                continue  # it falls silent, and its moment goes
             try:
                 self._sources.hear(source, joy.axes, joy.buttons, now_ns)
                 self._verdicts.hear(source, joy.buttons)

@@ -22,6 +22,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Joy
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from teleop_key_node.shared_names import SharedNames
 
 
 def test_presses_of_several_sources_add_up(graph, start):
@@ -126,6 +127,53 @@ def test_a_gamepad_counts_as_its_driver_publishes_it(graph, start):
     output = process.output()
     assert "'joy' on /joy: 4 axes, 8 buttons; joy_axes and joy_buttons say which of them count" in output
     assert "'joy' fell silent" in output
+
+
+@pytest.mark.parametrize('topic', [contract.JOY, contract.KEYS])
+def test_two_publishers_of_one_name_do_not_press_a_held_button_again_and_again(graph, start, topic):
+    """One holds the left button, the other reports that nothing is held."""
+    publishers = graph.publisher(topic), graph.publisher(topic)
+
+    def send(held):
+        for publisher, buttons in zip(publishers, ((held, 0, 0), (0, 0, 0)), strict=True):
+            message = Joy(buttons=buttons, axes=(0.0, 0.0))
+            message.header.frame_id = 'pad'
+            publisher.publish(message)
+    process = start('screen:=off', 'keystroke:=1.0', 'moment_limit:=10.0')
+    graph.until(lambda: all(publisher.get_subscription_count() for publisher in publishers), 'the node')
+    largest = 0.0
+    for _ in range(60):
+        send(1)
+        time.sleep(0.02)
+        largest = max(largest, graph.listen())
+    assert largest < 5.0
+    graph.expect(0.0)
+    process.stop()
+    assert f"two publishers call themselves 'pad' on /{topic.name}" in process.output()
+
+
+def test_a_publisher_alone_counts_and_so_do_two_of_different_names(graph, start):
+    first, second = graph.publisher(contract.KEYS), graph.publisher(contract.KEYS)
+    start('screen:=off', 'keystroke:=1.0', 'moment_limit:=10.0', 'source_timeout:=5.0')
+    graph.until(lambda: all(publisher.get_subscription_count() for publisher in (first, second)), 'the node')
+    for _ in range(3):
+        for publisher, name in ((first, 'left hand'), (second, 'right hand')):
+            for down in (1, 0):
+                message = Joy(buttons=(down, 0, 0))
+                message.header.frame_id = name
+                publisher.publish(message)
+    graph.expect(6.0)
+
+
+def test_a_publisher_that_is_started_anew_shares_no_name():
+    names = SharedNames()
+    heard = [*range(500, 520), *range(1, 20)]
+    assert not any(names.is_shared('pad', number, 0.1 * at) for at, number in enumerate(heard))
+    mixed = [number for both in zip(range(20, 40), range(1, 21), strict=True) for number in both]
+    found = [names.is_shared('pad', number, 4.0 + 0.05 * at) for at, number in enumerate(mixed)]
+    assert not any(found[:3]) and all(found[4:])
+    assert not names.is_shared('pad', 41, 60.0), 'the other is gone'
+    assert not names.is_shared('pad', None, 61.0), 'a middleware without numbers'
 
 
 def test_a_mapping_that_cannot_be_is_named(run_to_its_end):
