@@ -41,13 +41,13 @@ class Page:
         A token in ``parameters`` is taken out of them, since they are recorded.
 
         Raises:
-            OSError: the host is none of this machine's.
+            OSError: the host is none of this machine's, or the port is in use.
         """
         token = parameters.get(NODE, {}).pop('token', '')
         if settings.tutor != 'page':
             return None
         host, port = settings.page
-        return cls(host, port or free_port(host),
+        return cls(host, free_port(host, port),
                    (token or secrets.token_urlsafe(16)) if needs_token(host) else None)
 
     @property

@@ -27,6 +27,7 @@ from shared_control_bringup.teaching import End
 from shared_control_records.session.final_test import sha256
 from shared_control_records.session.folder import SessionFolder
 from shared_control_testing.sessions import lesson, record
+from teach_page_node.address import listen
 
 
 class NoNeighbours:
@@ -87,6 +88,7 @@ REFUSED = [
     (['--seed', 2**31], '--seed must be'),
     (['--page', '127.0.0.1:0'], '--page belongs to --tutor page'),
     (['--tutor', 'page', '--page', 'no.such.host.invalid:0'], 'cannot serve the page at no.such.host.invalid'),
+    (['--tutor', 'page', '--page', 'no.such.host.invalid:8088'], 'cannot serve the page at no.such.host.invalid:8088'),
     (['--params-file', 'nowhere.yaml'], 'nowhere.yaml'),
     (['--params-file', 'wrong.yaml'], "wrong.yaml: there is no node '/**/panda_sim'"),
 ]
@@ -105,6 +107,17 @@ def test_a_refused_start_leaves_everything_as_it_was(session, tmp_path, monkeypa
         assert said in capsys.readouterr().err
     assert content(old) == before
     assert not (tmp_path / 'new').exists(), 'a half-made folder would block the next try'
+
+
+def test_a_port_that_somebody_else_has_is_refused_before_anything_is_touched(session, tmp_path, capsys):
+    old = tmp_path / 'old'
+    assert session('--tutor', 'sim', '--output', old) == 0
+    before = content(old)
+    with listen('127.0.0.1', 0) as taken:
+        page = f'127.0.0.1:{taken.getsockname()[1]}'
+        assert session('--tutor', 'page', '--page', page, '--output', old, '--overwrite') == 2
+    assert f'cannot serve the page at {page}' in capsys.readouterr().err
+    assert content(old) == before
 
 
 def test_a_blind_session_says_neither_condition_nor_folder_and_stays_blind(session, tmp_path, capsys):

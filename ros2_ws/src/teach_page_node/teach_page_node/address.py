@@ -76,13 +76,13 @@ def listen(host: str, port: int) -> socket.socket:
                       'port 0 for any that is free') from error
 
 
-def free_port(host: str) -> int:
-    """A port of ``host`` at which nobody listens.
+def free_port(host: str, port: int = 0) -> int:
+    """A port of ``host`` at which nobody listens: this one, or any when it is 0.
 
     Raises:
         OSError: see :func:`listen`.
     """
-    with listen(host, 0) as bound:
+    with listen(host, port) as bound:
         return bound.getsockname()[1]
 
 
