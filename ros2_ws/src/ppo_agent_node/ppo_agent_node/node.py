@@ -150,7 +150,11 @@ class PpoAgentNode(Callbacks):
 
     def _make_learner(self, chosen: Preset, seed: int, output: str, resume: bool) -> Learner:
         """A new learner, or the one in the output folder."""
-        learner = chosen.make(seed)
+        try:
+            learner = chosen.make(seed)
+        except ValueError as error:
+            raise ParameterError(f"parameter 'preset' is {chosen.name!r}, which cannot learn the task "
+                                 f'{chosen.task.name!r}: {error}') from error
         if output:
             folder = Path(output)
             folder.mkdir(parents=True, exist_ok=True)

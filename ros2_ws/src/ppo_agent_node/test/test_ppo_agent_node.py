@@ -171,3 +171,9 @@ def test_unusable_parameters_are_one_clear_line(start_node, parameters, words):
     assert len(lines) == 1
     assert words in lines[0]
     assert 'Traceback' not in node.log()
+
+
+def test_a_preset_that_cannot_learn_the_task_is_said(start_node, observer):
+    agent = start_node('ppo_agent_node', preset='lqr', task='plate')
+    assert exit_code(observer, agent) == 2, 'no use to start it again'
+    assert "error: parameter 'preset' is 'lqr', which cannot learn the task 'plate'" in agent.log()

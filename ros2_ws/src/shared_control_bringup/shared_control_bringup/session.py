@@ -116,7 +116,9 @@ def _new_settings(args: argparse.Namespace) -> Settings:
     given = given_settings(args)
     if given.get('tutor') == 'sim':
         given.setdefault('episodes', EPISODES_OF_SIMULATED)
-    return Settings().with_options(given).resolved()
+    settings = Settings().with_options(given).resolved()
+    settings.check_preset()
+    return settings
 
 
 def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settings:

@@ -89,6 +89,9 @@ REFUSED = [
     (['--page', '127.0.0.1:0'], '--page belongs to --tutor page'),
     (['--tutor', 'page', '--page', 'no.such.host.invalid:0'], 'cannot serve the page at no.such.host.invalid'),
     (['--tutor', 'page', '--page', 'no.such.host.invalid:8088'], 'cannot serve the page at no.such.host.invalid:8088'),
+    (['--preset', 'lqr', '--task', 'plate'], 'the preset lqr cannot learn the task plate'),
+    (['--preset', 'pd', '--task', 'plate'], 'the preset pd cannot learn the task plate'),
+    (['--preset', 'identified_lqr', '--task', 'detour'], 'the preset identified_lqr cannot learn the task detour'),
     (['--params-file', 'nowhere.yaml'], 'nowhere.yaml'),
     (['--params-file', 'wrong.yaml'], "wrong.yaml: there is no node '/**/panda_sim'"),
 ]
