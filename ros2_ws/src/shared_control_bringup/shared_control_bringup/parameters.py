@@ -27,6 +27,14 @@ ANY_NODE = '/**'
 """Where a parameter file has values for all nodes."""
 
 
+class _WithoutAliases(yaml.SafeDumper):
+    """Writes out what occurs twice, since ROS refuses aliases."""
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """See :class:`yaml.SafeDumper`."""
+        return True
+
+
 def load(path: Path = DEFAULTS) -> dict[str, dict[str, Any]]:
     """Parameters by node: the defaults, with the values of a file laid over them.
 
@@ -36,12 +44,15 @@ def load(path: Path = DEFAULTS) -> dict[str, dict[str, Any]]:
         ValueError: the file is not a ROS parameter file, or names a node that does not exist; the message names it.
         OSError: it cannot be read.
     """
-    given = _read(path)
-    everywhere = given.pop(ANY_NODE, None)
-    parameters = _read(DEFAULTS)
-    if everywhere:
+    return over_defaults(read(path.read_bytes(), path))
+
+
+def over_defaults(given: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """The defaults with values laid over them, as :func:`read` gives these."""
+    parameters = read(DEFAULTS.read_bytes(), DEFAULTS)
+    if everywhere := given.get(ANY_NODE):
         parameters = lay_over(parameters, dict.fromkeys(ALL_NODES, everywhere))
-    return lay_over(parameters, given)
+    return lay_over(parameters, {node: values for node, values in given.items() if node != ANY_NODE})
 
 
 def lay_over(parameters: dict[str, dict[str, Any]], values: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
@@ -52,14 +63,24 @@ def lay_over(parameters: dict[str, dict[str, Any]], values: dict[str, dict[str, 
 def save(parameters: dict[str, dict[str, Any]], path: Path) -> None:
     """Write a ROS parameter file."""
     content = {node: {'ros__parameters': values} for node, values in parameters.items()}
-    write_atomically(path, yaml.safe_dump(content, sort_keys=False).encode())
+    write_atomically(path, yaml.dump(content, Dumper=_WithoutAliases, sort_keys=False).encode())
 
 
-def _read(path: Path) -> dict[str, dict[str, Any]]:
-    """The parameters in a file, by node."""
+def read(text: bytes, path: Path) -> dict[str, dict[str, Any]]:
+    """The parameters that a file has in it, by node, and those for all nodes under :data:`ANY_NODE`.
+
+    Args:
+        text: of the file.
+        path: that messages name.
+
+    Raises:
+        ValueError: see :func:`load`.
+    """
     try:
-        content = yaml.safe_load(path.read_text(encoding='utf-8'))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        content = yaml.safe_load(text.decode('utf-8'))
+    except RecursionError as error:
+        raise ValueError(f'{path} is not a ROS parameter file: it is nested too deeply') from error
+    except (yaml.YAMLError, ValueError) as error:  # of a date that there is none of, the latter
         raise ValueError(f'{path} is not valid YAML: {error}') from error
     if not isinstance(content, dict):
         raise ValueError(f'{path} is not a ROS parameter file: expected NODE: ros__parameters: NAME: VALUE')

@@ -56,8 +56,9 @@ def run(args: argparse.Namespace) -> int:
     if earlier is not None and _is_taught(settings, earlier, given_settings(args)):
         return _test_only(settings, earlier)
     params_file = getattr(args, 'params_file', ros_parameters.DEFAULTS) if earlier is None else earlier.given_parameters
-    parameters = ros_parameters.load(params_file)
-    given_parameters = params_file.read_bytes()
+    given_parameters = params_file.read_bytes()  # once: it may be a pipe
+    given = ros_parameters.read(given_parameters, params_file)
+    parameters = ros_parameters.over_defaults(given)
     if settings.tutor == 'keyboard':
         _require_terminal()
     shows_screen = _has_terminal() and _can_draw() and settings.screen and settings.tutor != 'page'

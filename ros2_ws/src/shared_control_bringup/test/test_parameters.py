@@ -31,6 +31,8 @@ def test_what_is_saved_can_be_loaded(tmp_path):
 
 @pytest.mark.parametrize(('content', 'said'), [
     ('a: [', 'not valid YAML'),
+    ('a: 2026-13-40', 'not valid YAML'),
+    (20_000 * '[', 'nested too deeply'),
     ('- 1', 'not a ROS parameter file'),
     ('panda_sim: {ros__parameters: {mode: lockstep}}', "there is no node 'panda_sim'; there are .*panda_sim_node"),
     ('panda_sim_node: {mode: lockstep}', "'panda_sim_node' has no ros__parameters"),
@@ -58,3 +60,11 @@ def test_a_file_that_is_no_text_is_refused_by_name(tmp_path):
     (tmp_path / 'mine.yaml').write_bytes(b'\xff\xfe\x00')
     with pytest.raises(ValueError, match=r'mine\.yaml is not valid YAML'):
         load(tmp_path / 'mine.yaml')
+
+
+def test_what_all_nodes_share_is_written_without_aliases(tmp_path):
+    (tmp_path / 'mine.yaml').write_text('/**: {ros__parameters: {joy_scale: [1.0, -1.0]}}\n')
+    parameters = load(tmp_path / 'mine.yaml')
+    save(parameters, tmp_path / 'parameters.yaml')
+    assert '&' not in (tmp_path / 'parameters.yaml').read_text(), 'ROS refuses them'
+    assert load(tmp_path / 'parameters.yaml') == parameters

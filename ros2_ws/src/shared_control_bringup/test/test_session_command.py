@@ -15,6 +15,7 @@
 """What ``shared-control session`` checks, writes and removes before and beside the graph, which is left out here."""
 
 import json
+import os
 
 import pytest
 import yaml
@@ -173,6 +174,20 @@ def test_a_file_with_a_few_values_is_laid_over_the_defaults(session, few, tmp_pa
         **load()['panda_sim_node'], 'task': 'balance', 'physics': 'bullet', 'paced': False, 'seed': 3}
     assert folder.ros_parameters('torque_ctrl_node')['enabled'] is True, 'beside a simulator'
     assert folder.ros_parameters('ppo_agent_node')['test_episodes'] == load()['ppo_agent_node']['test_episodes']
+
+
+def test_parameters_can_come_from_a_pipe(session, tmp_path):
+    folder = SessionFolder(tmp_path / 'session')
+    text = 'panda_sim_node: {ros__parameters: {paced: false}}'
+    pipe, theirs = os.pipe()
+    os.write(theirs, text.encode())
+    os.close(theirs)
+    try:
+        assert session('--tutor', 'sim', '--output', folder.path, '--params-file', f'/dev/fd/{pipe}') == 0
+    finally:
+        os.close(pipe)
+    assert folder.ros_parameters('panda_sim_node')['paced'] is False
+    assert folder.given_parameters.read_text() == text
 
 
 def test_a_session_goes_on_with_its_parameters_and_the_options_given_now(session, few, tmp_path, monkeypatch):
