@@ -36,6 +36,7 @@ from .neighbours import Neighbours
 from .node_process import NodeProcess
 from .options import given_settings, refuse_options_of_new_sessions
 from .page import Page
+from .parameter_check import check_values
 from .settings import EPISODES_OF_SIMULATED, Settings
 from .supervisor import STOP_SECONDS
 from .teaching import POLL_SECONDS, End, teach
@@ -58,6 +59,8 @@ def run(args: argparse.Namespace) -> int:
     params_file = getattr(args, 'params_file', ros_parameters.DEFAULTS) if earlier is None else earlier.given_parameters
     given_parameters = params_file.read_bytes()  # once: it may be a pipe
     given = ros_parameters.read(given_parameters, params_file)
+    if earlier is None:
+        check_values(given, params_file)
     parameters = ros_parameters.over_defaults(given)
     if settings.tutor == 'keyboard':
         _require_terminal()

@@ -94,6 +94,8 @@ REFUSED = [
     (['--preset', 'pd', '--task', 'plate'], 'the preset pd cannot learn the task plate'),
     (['--preset', 'identified_lqr', '--task', 'detour'], 'the preset identified_lqr cannot learn the task detour'),
     (['--params-file', 'nowhere.yaml'], 'nowhere.yaml'),
+    (['--params-file', 'misspelt.yaml'], "misspelt.yaml: panda_sim_node has no parameter 'pased'"),
+    (['--params-file', 'int.yaml'], "int.yaml: parameter 'command_timeout' of torque_ctrl_node must be of type float"),
     (['--params-file', 'wrong.yaml'], "wrong.yaml: there is no node '/**/panda_sim'"),
 ]
 
@@ -102,6 +104,8 @@ REFUSED = [
 def test_a_refused_start_leaves_everything_as_it_was(session, tmp_path, monkeypatch, capsys, arguments, said):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'wrong.yaml').write_text('/**/panda_sim:\n  ros__parameters:\n    seed: 1\n')
+    (tmp_path / 'misspelt.yaml').write_text('/**/panda_sim_node: {ros__parameters: {pased: false}}')
+    (tmp_path / 'int.yaml').write_text('torque_ctrl_node: {ros__parameters: {command_timeout: 1}}')
     old = tmp_path / 'old'
     assert session('--tutor', 'sim', '--output', old) == 0
     (old / 'learner' / 'policy.safetensors').write_bytes(b'hours of work')

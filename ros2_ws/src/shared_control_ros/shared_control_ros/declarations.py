@@ -19,6 +19,7 @@ import re
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from .processes import node_module
 
@@ -32,6 +33,7 @@ class Declaration:
     """A call of :func:`shared_control_ros.parameters.declare`."""
 
     name: str
+    """``...`` stands in it for what the sources compute."""
     value: object
     """The default; None where it is no literal."""
     default: str
@@ -40,6 +42,20 @@ class Declaration:
     """The default for people to read: what a constant stands for, and true and false as in YAML."""
     description: str
     """As the sources write it, with unit and range; with ... for what they compute."""
+    is_choice: bool = False
+    """Whether it has a fixed set of values, all of them texts."""
+    choices: tuple[str, ...] = ()
+    """These values; empty where they are no literals."""
+    minimum: float | None = None
+    """None: there is none, or it is no literal."""
+    maximum: float | None = None
+    """Likewise."""
+
+    @property
+    def type(self) -> type | None:
+        """What a value must be; None: not known."""
+        known = self.value if self.value is not None else self.minimum
+        return None if known is None else type(known)
 
 
 def declarations(node: str) -> list[Declaration]:
@@ -66,10 +82,9 @@ def declarations_of(package: str) -> list[Declaration]:
         if not isinstance(call, ast.Call):
             continue
         if ast.unparse(call.func) == 'declare_task':
-            found['task'] = Declaration('task', TASK, repr(TASK), TASK, _text(call.args[1]))
-        elif ast.unparse(call.func) == 'declare' and isinstance(call.args[1], ast.Constant) and (
-                call.args[1].value not in found):
-            found[str(call.args[1].value)] = _declaration(call, module)
+            found['task'] = Declaration('task', TASK, repr(TASK), TASK, _text(call.args[1]), is_choice=True)
+        elif ast.unparse(call.func) == 'declare' and (name := _text(call.args[1])) and name not in found:
+            found[name] = _declaration(call, module)
     return [found[name] for name in sorted(found)]
 
 
@@ -79,9 +94,19 @@ def _declaration(call: ast.Call, module: ast.Module) -> Declaration:
     description = _text(text)
     description += f' [{extras["unit"]}]' if 'unit' in extras else ''
     description += f' ({extras["minimum"]} to {extras["maximum"]})' if {'minimum', 'maximum'} <= extras.keys() else ''
-    assert isinstance(name, ast.Constant)
-    return Declaration(str(name.value), default.value if isinstance(default, ast.Constant) else None,
-                       ast.unparse(default), _shown(default, module), description)
+    given = {str(keyword.arg): _literal(keyword.value) for keyword in call.keywords}
+    return Declaration(
+        _text(name), _literal(default), ast.unparse(default), _shown(default, module), description,
+        is_choice='choices' in given, choices=given.get('choices') or (), minimum=given.get('minimum'),
+        maximum=given.get('maximum'))
+
+
+def _literal(written: ast.expr) -> Any:
+    """The value of an expression; None where it is no literal."""
+    try:
+        return ast.literal_eval(written)
+    except ValueError:
+        return None
 
 
 def _shown(default: ast.expr, module: ast.Module) -> str:

@@ -1,0 +1,82 @@
+# Copyright 2026 shared-control maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Whether nodes can run with the values in a parameter file: looked at before anything is started or removed."""
+
+import re
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from shared_control_ros.declarations import Declaration, declarations
+
+from .graph import ALL_NODES
+from .parameters import ANY_NODE
+
+OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides', 'qos_overrides.*')
+"""Parameters that every node has of rclpy, as patterns."""
+_EXPONENT = re.compile(r'[-+]?\d+[eE][-+]?\d+')
+"""A number to ROS, and a text to YAML 1.1."""
+
+
+def check_values(given: dict[str, dict[str, Any]], path: Path) -> None:
+    """Compare the values in a file with what the nodes declare.
+
+    Args:
+        given: see :func:`.parameters.read`.
+        path: that messages name.
+
+    Raises:
+        ValueError: a node has no such parameter, or could not run with its value; the message names all three.
+    """
+    for node, values in given.items():
+        nodes = ALL_NODES if node == ANY_NODE else (node,)
+        declared = [declaration for name in nodes for declaration in declarations(name)] if values else []
+        for name, value in values.items():
+            if any(fnmatchcase(str(name), pattern) for pattern in OF_ROS):
+                continue
+            meant = [declaration for declaration in declared
+                     if fnmatchcase(str(name), declaration.name.replace('...', '*'))]
+            if not meant:
+                there_are = ', '.join(sorted({declaration.name for declaration in declared}))
+                raise ValueError(f'{path}: {node} has no parameter {name!r}; there are {there_are}')
+            for declaration in meant:
+                if problem := _problem(declaration, value):
+                    raise ValueError(f'{path}: parameter {name!r} of {node} {problem}')
+
+
+def _problem(declaration: Declaration, value: Any) -> str:
+    """What is wrong with a value; empty: nothing that the declaration tells."""
+    wanted = declaration.type
+    if value is None:
+        return 'has no value'
+    if wanted is float and isinstance(value, str) and _EXPONENT.fullmatch(value):
+        value = float(value)
+    takes_any_type = declaration.is_choice and wanted is not list  # a bare off is a boolean in YAML
+    if wanted is not None and type(value) is not wanted and not takes_any_type:
+        point = f': write {value}.0' if wanted is float and type(value) is int else ''
+        return f'must be of type {wanted.__name__}, not {value!r}{point}'
+    if isinstance(value, list) and isinstance(declaration.value, list):
+        kind = type(declaration.value[0])
+        for item in value:
+            if type(item) is not kind:
+                return f'must be a list of {kind.__name__}, and {item!r} is none'
+    for item in (value if isinstance(value, list) else [value]) if declaration.choices else []:
+        word = ('on' if item else 'off') if isinstance(item, bool) else item
+        if word not in declaration.choices:
+            return f'has no choice {word!r}; there are {", ".join(declaration.choices)}'
+    if declaration.minimum is not None and declaration.maximum is not None and not (
+            declaration.minimum <= value <= declaration.maximum):
+        return f'must be at least {declaration.minimum} and at most {declaration.maximum}, not {value}'
+    return ''
