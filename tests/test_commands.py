@@ -1,5 +1,6 @@
 """Every command of the workspace explains itself."""
 
+import os
 import re
 import subprocess
 import sys
@@ -100,6 +101,13 @@ def test_what_only_an_extra_brings_is_asked_for_when_it_is_used(tmp_path):
     assert done.returncode == 2 and done.stderr == (
         "shared-control: the command needs the module 'pyarrow', which is not installed: "
         'pip install "shared-control[export]"\n')
+
+
+def test_the_shell_of_a_notebook_is_as_good_as_any(tmp_path):
+    done = subprocess.run(
+        [Path(sys.executable).parent / 'shared-control', 'report', tmp_path / 'nowhere'], check=False, text=True,
+        capture_output=True, env={**os.environ, 'MPLBACKEND': 'module://matplotlib_inline.backend_inline'}, timeout=60)
+    assert 'backend' not in done.stderr and 'nowhere' in done.stderr
 
 
 @pytest.mark.parametrize(('arguments', 'said'), [

@@ -20,6 +20,7 @@ code.
 """
 
 import argparse
+import os
 import signal
 import sys
 from importlib.metadata import EntryPoint, entry_points
@@ -38,6 +39,7 @@ def main() -> int:
     for number in (signal.SIGTERM, signal.SIGHUP):  # a scheduler's, a closed terminal's: as Ctrl-C, nothing is lost
         if signal.getsignal(number) is signal.SIG_DFL:  # not so under nohup
             signal.signal(number, signal.default_int_handler)
+    os.environ.pop('MPLBACKEND', None)  # a notebook's is none that this process has; all pictures are drawn without one
     with lossy_output():
         return _run()
 
