@@ -110,6 +110,14 @@ def test_the_shell_of_a_notebook_is_as_good_as_any(tmp_path):
     assert 'backend' not in done.stderr and 'nowhere' in done.stderr
 
 
+@pytest.mark.parametrize('closed', ['<&-', '>&-', '2>&-', '<&- >&- 2>&-'])
+def test_a_command_without_standard_streams_does_what_it_would(closed):
+    done = subprocess.run(
+        ['sh', '-c', f'"$0" tutors low --individuals 1 {closed}', Path(sys.executable).parent / 'shared-control'],
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0 and 'Error' not in done.stderr
+
+
 @pytest.mark.parametrize(('arguments', 'said'), [
     ([], 'commands:'), (['--version'], f'shared-control {version("shared-control")}')])
 def test_the_command_alone_helps_and_says_its_version(arguments, said):

@@ -27,7 +27,7 @@ from importlib.metadata import EntryPoint, entry_points
 
 from .command_line import add_parser, make_parser
 from .extras import missing
-from .streams import lossy_output
+from .streams import lossy_output, open_closed_streams
 
 ORDER = ('session', 'replay', 'report', 'view', 'export', 'recover', 'train', 'evaluate', 'tutors', 'study', 'validate',
          'doctor')
@@ -36,6 +36,7 @@ ORDER = ('session', 'replay', 'report', 'view', 'export', 'recover', 'train', 'e
 
 def main() -> int:
     """Entry point."""
+    open_closed_streams()
     for number in (signal.SIGTERM, signal.SIGHUP):  # a scheduler's, a closed terminal's: as Ctrl-C, nothing is lost
         if signal.getsignal(number) is signal.SIG_DFL:  # not so under nohup
             signal.signal(number, signal.default_int_handler)

@@ -12,13 +12,26 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Output that nobody reads any more (``| head``, a terminal that has hung up), and output that nobody asked for."""
+"""Streams that are closed (``>&-``), output that nobody reads any more (``| head``, a terminal that has hung up), and
+output that nobody asked for."""
 
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, TextIO
+
+
+def open_closed_streams() -> None:
+    """Open standard streams that this process was started without on /dev/null.
+
+    Files that are opened later would get their numbers, and what is printed.
+    """
+    for name, mode in (('stdin', 'r'), ('stdout', 'w'), ('stderr', 'w')):
+        if getattr(sys, name) is None:
+            number = os.open(os.devnull, os.O_RDWR)  # the lowest that is free: the stream's own
+            os.set_inheritable(number, True)
+            setattr(sys, name, os.fdopen(number, mode, encoding='utf-8', closefd=False))
 
 
 class _Lossy:

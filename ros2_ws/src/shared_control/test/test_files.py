@@ -100,3 +100,23 @@ def test_a_lost_reader_costs_no_work(tmp_path, lost):
     command.stdin.close()
     assert command.wait(60) == 0
     assert (tmp_path / 'done').read_text() == 'the work is done'
+
+
+CLOSED = """
+import os, sys
+from shared_control.streams import lossy_output, open_closed_streams
+open_closed_streams()
+with open(sys.argv[1], 'w') as file, lossy_output():
+    print('to nobody', flush=True)
+    print('nor to anybody', file=sys.stderr, flush=True)
+    subprocess = os.system('echo from a child; echo of this; cat')
+    file.write(f'{sys.stdin.isatty()} {sys.stdin.read()!r} {subprocess}')
+"""
+
+
+@pytest.mark.parametrize('closed', ['<&-', '>&-', '2>&-', '<&- >&- 2>&-'])
+def test_a_stream_that_is_closed_is_one_to_nobody(tmp_path, closed):
+    done = subprocess.run(['sh', '-c', f'exec "$0" -c "$1" "$2" {closed}', sys.executable, CLOSED, tmp_path / 'file'],
+                          stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and 'Error' not in done.stderr
+    assert (tmp_path / 'file').read_text() == "False '' 0"

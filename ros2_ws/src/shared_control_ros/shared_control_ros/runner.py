@@ -25,6 +25,7 @@ from rclpy.exceptions import ROSInterruptException
 from rclpy.logging import get_logging_directory
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from shared_control.streams import open_closed_streams
 
 from .parameters import ParameterError
 from .processes import adopt_node_environment
@@ -65,6 +66,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     Returns:
         The exit code: 0, or 2 when a parameter or a file is unusable (said in one line on stderr).
     """
+    open_closed_streams()
     if args is None:
         args = sys.argv
     adopt_node_environment()  # a node that was started by hand keeps to this machine, too
