@@ -26,7 +26,7 @@ from shared_control.files import write_atomically
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata
-from shared_control_records.session.final_test import sha256
+from shared_control_records.session.final_test import load_test, sha256
 from shared_control_records.session.folder import SessionFolder
 
 from . import parameters as ros_parameters
@@ -54,8 +54,10 @@ def run(args: argparse.Namespace) -> int:
     """
     earlier = None if args.resume is None else SessionFolder.open(args.resume)
     settings = _new_settings(args) if earlier is None else _resumed_settings(args, earlier)
-    if earlier is not None and _is_taught(settings, earlier, given_settings(args)):
-        return _test_only(settings, earlier)
+    if earlier is not None:
+        _check_results(earlier)
+        if _is_taught(settings, earlier, given_settings(args)):
+            return _test_only(settings, earlier)
     params_file = getattr(args, 'params_file', ros_parameters.DEFAULTS) if earlier is None else earlier.given_parameters
     given_parameters = params_file.read_bytes()  # once: it may be a pipe
     given = ros_parameters.read(given_parameters, params_file)
@@ -138,9 +140,19 @@ def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settin
     return settings.resumed_with(given_settings(args)).resolved()
 
 
+def _check_results(folder: SessionFolder) -> None:
+    """Refuse results of an earlier session that could not be read after the teaching, either."""
+    try:
+        load_test(folder.test)
+        _earlier_restarts(folder)
+    except (ValueError, OSError) as error:
+        raise ValueError(f'{error}; remove that file: it is written anew') from error
+
+
 def _is_taught(settings: Settings, folder: SessionFolder, given: dict[str, Any]) -> bool:
     """Whether an earlier session is to go on with its test: that was broken off, or another one is asked for."""
-    return settings.taught and (set(given) <= {'test_episodes'} if given else not folder.test.exists())
+    return settings.taught and settings.test_episodes > 0 and (
+        set(given) <= {'test_episodes'} if given else not folder.test.exists())
 
 
 def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: Page | None,
@@ -150,19 +162,26 @@ def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: 
     folder.write_settings(replace(settings, taught=False).to_json())
     folder.ending.unlink(missing_ok=True)
     end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts, settings.blind)
-    if folder.test.exists() and folder.policy.exists() and _policy_of_the_test(folder) != sha256(folder.policy):
+    test = load_test(folder.test)
+    if test is not None and folder.policy.exists() and test.policy != sha256(folder.policy):
         folder.test.unlink()  # the policy has learned since
     folder.write_settings(replace(settings, taught=end is End.DONE).to_json())
     return end, restarts + earlier_restarts, page_node
 
 
-def _policy_of_the_test(folder: SessionFolder) -> str | None:
-    return (folder.read_json(folder.test) or {}).get('policy')
-
-
 def _earlier_restarts(folder: SessionFolder) -> int:
-    """Restarts of nodes in the part of the session that was reported before."""
-    return (folder.read_json(folder.summary) or {}).get('restarts') or 0
+    """Restarts of nodes in the part of the session that was reported before.
+
+    Raises:
+        ValueError: the summary says something else.
+        OSError: it cannot be read.
+    """
+    restarts = (folder.read_json(folder.summary) or {}).get('restarts')
+    if restarts is None:
+        return 0
+    if type(restarts) is not int or restarts < 0:
+        raise ValueError(f'cannot use {folder.summary}: restarts is {restarts!r}, expected a whole number')
+    return restarts
 
 
 def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, interrupts: Interrupts) -> End:

@@ -14,6 +14,7 @@
 
 """What the options of a session say."""
 
+import json
 import math
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
@@ -170,19 +171,19 @@ class Settings:
 
     @classmethod
     def from_json(cls, content: dict[str, Any]) -> 'Settings':
-        """From settings.json; what is missing has its default.
+        """From settings.json; what is missing has its default, and a whole number may stand for one with a point.
 
         Raises:
             ValueError: a value cannot be used; the message names it.
         """
+        from pydantic import TypeAdapter, ValidationError  # late: `--help` need not wait for it
+        from shared_control_learning.wrong_content import what_is_wrong
         known = {field.name for field in fields(cls)}
-        values: dict[str, Any] = {
-            name: tuple(value) if isinstance(value, list) else value for name, value in content.items()
-            if name in known}
+        values: dict[str, Any] = {name: value for name, value in content.items() if name in known}
         tutor = str(values.get('tutor', cls.tutor))
         if tutor.startswith(SIMULATED):
             values |= {'tutor': 'sim', 'profile': tutor.removeprefix(SIMULATED)}
         try:
-            return cls(**values)
-        except (TypeError, LookupError) as error:
-            raise ValueError(f'a value has the wrong type: {error}') from error
+            return TypeAdapter(cls).validate_json(json.dumps(values), strict=True)
+        except ValidationError as error:
+            raise ValueError(what_is_wrong(error)) from error

@@ -245,13 +245,22 @@ def test_a_session_that_is_taught_goes_on_with_its_test_alone(session, tmp_path,
     assert session.taught == 2
     assert session('--resume', folder.path) == 0, 'the test, which is missing'
     assert 'the teaching is over' in capsys.readouterr().out and session.taught == 2
-    folder.test.write_text('{}')
+    folder.test.write_text('{"episodes": []}')
     assert session('--resume', folder.path, '--test-episodes', 3) == 0, 'another test'
     assert session.taught == 2
     assert session('--resume', folder.path) == 0, 'nothing else is left to do: more teaching'
     assert session.taught == 3
     assert session('--resume', folder.path, '--episodes', 50) == 0
     assert session.taught == 4
+
+
+def test_a_session_that_is_not_to_be_tested_goes_on_with_its_teaching(session, tmp_path):
+    folder = SessionFolder(tmp_path / 'session')
+    assert session('--tutor', 'sim', '--test-episodes', 0, '--output', folder.path) == 0
+    assert session('--resume', folder.path) == 0
+    assert session.taught == 2
+    assert session('--resume', folder.path, '--test-episodes', 3) == 0
+    assert session.taught == 2, 'now it is to be tested, and that is all that is left'
 
 
 def test_a_session_in_which_nothing_was_learned_has_a_report(tmp_path, capsys):
@@ -267,7 +276,7 @@ def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):
     folder = SessionFolder(tmp_path / 'session')
     assert session('--tutor', 'sim', '--output', folder.path) == 0
     folder.policy.write_bytes(b'as it was tested')
-    folder.test.write_text(json.dumps({'policy': sha256(folder.policy)}))
+    folder.test.write_text(json.dumps({'episodes': [], 'policy': sha256(folder.policy)}))
     assert session('--resume', folder.path) == 0
     assert folder.test.exists(), 'nothing was learned since'
     folder.policy.write_bytes(b'as it has learned since')
@@ -277,7 +286,11 @@ def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):
 
 @pytest.mark.parametrize(('name', 'text', 'said'), [
     ('settings.json', None, 'settings.json is missing'),
-    ('settings.json', '{"episodes": "many"}', 'settings.json: a value has the wrong type'),
+    ('settings.json', '{"episodes": "many"}', "settings.json: episodes: Input should be a valid integer, found 'many'"),
+    ('settings.json', '{"test_episodes": 2.5}', 'settings.json: test_episodes: Input should be a valid integer'),
+    ('test.json', '{"episodes": [', 'test.json is no result of a test'),
+    ('summary.json', '{"restarts": "2"}', "summary.json: restarts is '2'"),
+    ('summary.json', '{"restarts": 2', 'summary.json: '),
     ('given_parameters.yaml', None, 'given_parameters.yaml')])
 def test_a_session_whose_files_are_damaged_does_not_go_on(session, tmp_path, capsys, name, text, said):
     folder = tmp_path / 'session'

@@ -57,9 +57,21 @@ def test_settings_are_read_back(settings):
     assert Settings.from_json(json.loads(json.dumps(settings.to_json()))) == settings
 
 
+@pytest.mark.parametrize(('name', 'value'), [
+    ('episodes', 'many'), ('test_episodes', 2.5), ('seed', 1.5), ('seed', True), ('verdicts', 'no'), ('minutes', '45'),
+    ('earlier_tutors', 5), ('earlier_tutors', [5]), ('page', ['127.0.0.1']), ('page', 8088), ('task', None),
+    ('tutor', 5)])
+def test_a_value_of_the_wrong_type_is_refused_by_name(name, value):
+    with pytest.raises(ValueError, match=f'^{name}'):
+        Settings.from_json({name: value})
+
+
+def test_a_whole_number_may_stand_for_one_with_a_point():
+    minutes = Settings.from_json({'minutes': 45}).minutes
+    assert (minutes, type(minutes)) == (45.0, float), 'as tools in JavaScript write it'
+
+
 def test_files_that_are_no_settings_are_refused():
-    with pytest.raises(ValueError, match='wrong type'):
-        Settings.from_json({'episodes': 'many'})
     with pytest.raises(ValueError, match='--preset has no choice'):
         Settings.from_json({'preset': 'magic'})
 
