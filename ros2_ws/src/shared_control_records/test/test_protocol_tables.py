@@ -23,10 +23,12 @@ import pytest
 from matplotlib.figure import Figure
 from shared_control.command_line import write_json
 from shared_control.tasks.balance import BALANCE
+from shared_control_learning.episode_table import TABLE_NAME
 from shared_control_learning.evaluation.result import ProtocolResult
 from shared_control_learning.evaluation.statistics import curve, episode_figures, mean_and_sem, policy_figures
-from shared_control_learning.policy_file import PolicyFileError, save_policy
+from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, save_policy
 from shared_control_learning.presets import COACHED
+from shared_control_learning.training import RUN_NAME
 from shared_control_records.evaluation.command import add_command
 from shared_control_records.evaluation.figures import plots
 from shared_control_records.evaluation.policies import load_policies
@@ -81,7 +83,7 @@ def test_the_table_counts_and_averages():
 def test_files_hold_every_sample_once(tmp_path):
     results = {'a': [constant(0.01, 0.02)], 'b': [constant(0.03, 0.04, fallen_after=100)]}
     write_csv(results, tmp_path)
-    episodes = pd.read_csv(tmp_path / 'episodes.csv')
+    episodes = pd.read_csv(tmp_path / 'tested_episodes.csv')
     assert list(episodes.position_error.round(4)) == [0.01, 0.02, 0.03, 0.04]
     tracks = pd.read_csv(tmp_path / 'randomized_tracks.csv')
     assert len(tracks) == 3 * STEPS + 100
@@ -93,6 +95,13 @@ def test_files_hold_every_sample_once(tmp_path):
     test = content['tests']['randomized']
     assert content['seed'] == 3 and test['over_policies']['count'] == 2
     assert test['policies']['b']['mean'] == policy_figures(results['b'][0])
+
+
+def test_tests_may_be_written_into_the_folder_of_a_run(tmp_path):
+    for name in (TABLE_NAME, RUN_NAME, POLICY_NAME):
+        (tmp_path / name).write_text("the run's")
+    write_csv({'a': [constant(0.01, 0.02)]}, tmp_path)
+    assert {(tmp_path / name).read_text() for name in (TABLE_NAME, RUN_NAME, POLICY_NAME)} == {"the run's"}
 
 
 @pytest.mark.parametrize(('test', 'numbers'), [('perturbation', ['fig18', 'fig19']), ('trajectory 0.5 Hz', ['fig23'])])

@@ -34,6 +34,8 @@ _COLUMNS: dict[str, tuple[str, float, str]] = {
     'velocity_error_settled': ('last 3 s', 1e3, '.2f'), 'agent_moment': ('|M_yai| N m', 1.0, '.2f'),
     'k_w': ('k_w', 1.0, '.4f'), 'one_minus_k_w_squared': ('1 - k_w^2', 1.0, '.4f')}
 """Head, factor and format of a column, by the name of its figure."""
+EPISODES_NAME = 'tested_episodes.csv'
+"""Not as the table of the taught episodes is called: tests may be written into the folder of a run."""
 
 
 def by_test(results: Results) -> dict[str, list[ProtocolResult]]:
@@ -79,12 +81,12 @@ def slug(test: str) -> str:
 
 
 def write_csv(results: Results, folder: Path) -> None:
-    """``episodes.csv``, a row an episode; and for each test its tracks and their mean and SEM over time."""
+    """``tested_episodes.csv``, a row an episode; and for each test its tracks and their mean and SEM over time."""
     episodes = [
         {'test': result.test, 'policy': name, 'episode': number, **figures}
         for name, tests in results.items() for result in tests
         for number, figures in enumerate(episode_figures(result), start=1)]
-    _write(pd.DataFrame(episodes), folder / 'episodes.csv')
+    _write(pd.DataFrame(episodes), folder / EPISODES_NAME)
     for test, tests in by_test(results).items():
         _write(pd.concat([_tracks(name, result) for name, result in zip(results, tests, strict=True)]),
                folder / f'{slug(test)}_tracks.csv')
