@@ -177,7 +177,8 @@ def read_run(folder: Path) -> TrainingRun:
 def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner, TrainingRun]:
     """The learner and the run in ``folder``, or those given when there are none yet."""
     folder.mkdir(parents=True, exist_ok=True)
-    if not (folder / POLICY_NAME).exists():
+    policy = folder / POLICY_NAME
+    if not policy.exists() and not (folder / RUN_NAME).exists():
         _write_run(run, folder)  # from now on the folder is known as a run's, however early this one is killed
         return learner, run
     stored = read_run(folder)
@@ -185,7 +186,12 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
         if getattr(stored, name) != getattr(run, name):
             raise TrainingError(f'{folder} holds a run with {name} {getattr(stored, name)!r}, asked for '
                                 f'{getattr(run, name)!r}: ask for the same, or name another folder')
-    learner = load_policy(folder / POLICY_NAME)
+    if not policy.exists():
+        if stored.episodes > 1:  # the first is written down a moment before its policy is, and can be taught again
+            raise TrainingError(f'{policy} is missing, though {folder / RUN_NAME} has {stored.episodes} episodes: put '
+                                'it back, or begin anew in another folder or by --overwrite')
+        return learner, run
+    learner = load_policy(policy)
     # The policy is written last: an episode that it has not learned from is taught anew.
     stored.tests = [test for test in stored.tests if test[0] <= learner.episode]
     for figures in (stored.returns, stored.intervention_rates, stored.presses, stored.interventions,

@@ -162,6 +162,26 @@ def test_a_run_that_was_killed_in_its_first_episode_can_be_overwritten_and_resum
     assert train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0).episodes == 1
 
 
+def test_a_run_whose_policy_is_missing_is_refused_and_stays(tmp_path):
+    train(SHORT, None, 5, 2, folder=tmp_path, evaluate_every=0)
+    (tmp_path / POLICY_NAME).rename(tmp_path / 'elsewhere')
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(TrainingError, match=r'policy\.safetensors is missing, though .*run\.json has 2 episodes'):
+        train(SHORT, None, 5, 3, folder=tmp_path, evaluate_every=0)
+    with pytest.raises(TrainingError, match='seed 5, asked for 6'):
+        train(SHORT, None, 6, 3, folder=tmp_path, evaluate_every=0)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_run_that_was_killed_before_its_first_policy_was_kept_goes_on(tmp_path):
+    train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0)
+    policy = (tmp_path / POLICY_NAME).read_bytes()
+    (tmp_path / POLICY_NAME).unlink()
+    assert train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0).episodes == 1
+    assert (tmp_path / POLICY_NAME).read_bytes() == policy
+    assert len(read_rows(tmp_path / 'episodes.csv')) == 1
+
+
 def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
     (tmp_path / 'thesis.tex').write_text('years of work')
     assert command(monkeypatch, '--output', tmp_path, '--overwrite') == 2
