@@ -33,7 +33,7 @@ from .episode import Episode
 from .episode_table import TABLE_NAME
 from .policy_file import POLICY_NAME
 from .presets import Preset, preset_for
-from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, read_run, train
+from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, new_learner, read_run, train
 
 
 def run(args: argparse.Namespace) -> int:
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _train(args: argparse.Namespace, chosen: Preset) -> int:
     """Train, and print what came of it; the exit code."""
-    tutor = args.profile or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
+    tutor = _tutor(args, chosen)
     done = read_run(args.output).episodes if args.resume else 0
     try:
         with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
@@ -66,12 +66,20 @@ def _train(args: argparse.Namespace, chosen: Preset) -> int:
     return 0 if result.skilled is not None or not result.tests else 1
 
 
+def _tutor(args: argparse.Namespace, chosen: Preset) -> str:
+    """The name of who teaches, ``none`` for nobody."""
+    return args.profile or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
+
+
 def _check_options(args: argparse.Namespace, chosen: Preset) -> None:
-    """Refuse numbers and combinations that cannot be."""
+    """Refuse numbers and combinations that cannot be, before anything is overwritten."""
     if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
         raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
     if not chosen.taught and args.profile not in (None, 'none'):
         raise ValueError(f'the preset {chosen.name} has no tutor: leave --profile out, or choose another preset')
+    tutor = _tutor(args, chosen)
+    new_learner(chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.physics,
+                Sharing(args.sharing))
 
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:

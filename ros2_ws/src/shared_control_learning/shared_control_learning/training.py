@@ -24,6 +24,7 @@ from pydantic import ConfigDict, TypeAdapter, with_config
 from shared_control.control.sharing import ADDITIVE, Sharing
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
+from shared_control.plugins import WORLDS, load
 from shared_control.seeds import episode_seed
 from shared_control.teaching.picture import can_teach
 from shared_control.teaching.tutors import Who, make_tutor
@@ -127,16 +128,13 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
             one must be guarded by ``if __name__ == '__main__'``.
 
     Raises:
-        TrainingError: ``folder`` holds another run.
+        TrainingError: ``folder`` holds another run, or one whose policy is missing.
         PolicyFileError: ``folder`` holds an unusable policy.
-        ValueError: there is a tutor, and the task has other axes than tutors know, or it cannot be shared like this.
+        ValueError: it cannot be done (:func:`new_learner`).
     """
-    sharing.check(len(preset.task.axes))
+    learner = new_learner(preset, tutor, seed, physics, sharing)
     run = TrainingRun(
         preset.name, None if tutor is None else asdict(tutor), seed, human_only, physics, sharing.way)
-    learner = preset.make(seed)
-    if tutor is not None and not can_teach(preset.task):
-        raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     if folder is not None:
         learner, run = _resumed(learner, run, folder)
     person = None if tutor is None else make_tutor(tutor, preset.task, seed, learner.episode)
@@ -153,6 +151,21 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
         env.close()
         test_env.close()
     return run
+
+
+def new_learner(preset: Preset, tutor: Who | None, seed: int, physics: str = 'bullet',
+                sharing: Sharing = ADDITIVE) -> Learner:
+    """A learner that has learned nothing yet, for a run that can be done; arguments as those of :func:`train`.
+
+    Raises:
+        ValueError: it cannot be done: the preset does not learn such a task, it cannot be shared like this, there is no
+            such physics, or there is a tutor and the task has other axes than tutors know.
+    """
+    sharing.check(len(preset.task.axes))
+    if tutor is not None and not can_teach(preset.task):
+        raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
+    load(WORLDS, physics)
+    return preset.make(seed)
 
 
 def passes_now(learner: Learner, test_env: SharedControlEnv, seed: int, helpers: ParallelTest | None = None) -> bool:

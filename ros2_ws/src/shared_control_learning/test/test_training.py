@@ -182,6 +182,19 @@ def test_a_run_that_was_killed_before_its_first_policy_was_kept_goes_on(tmp_path
     assert len(read_rows(tmp_path / 'episodes.csv')) == 1
 
 
+@pytest.mark.parametrize(('choice', 'message'), [
+    (('--sharing', 'axes'), 'only where a task has two'),
+    (('--preset', 'lqr', '--task', 'plate'), 'balance'),
+    (('--task', 'detour', '--preset', 'lqr'), 'balance'),
+])
+def test_a_run_that_cannot_be_done_overwrites_nothing(choice, message, tmp_path, monkeypatch, capsys):
+    train(SHORT, None, 5, 1, folder=tmp_path, evaluate_every=0)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.name != '.lock'}
+    assert command(monkeypatch, '--output', tmp_path, '--overwrite', '--task', 'balance', *choice) == 2
+    assert message in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.name != '.lock'} == before
+
+
 def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
     (tmp_path / 'thesis.tex').write_text('years of work')
     assert command(monkeypatch, '--output', tmp_path, '--overwrite') == 2
