@@ -14,9 +14,10 @@
 
 """The folder that a run writes: what in it is the run's own, and who may write there."""
 
+import json
 import logging
-import shutil
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
@@ -33,22 +34,27 @@ class RunFolder:
     Args:
         path: of the folder; it may not exist.
         kind: what a run is called in messages: ``session``.
-        own: names of the files and folders that a run writes.
-        marks: those of ``own`` that tell that there is a run; any of them does.
+        own: the files that a run writes, in the folder or in one within it; ``*`` stands for any part of a name.
+        mark: the JSON file that tells that there is a run.
+        keys: that a run's mark has; a file of somebody else may have the same name.
     """
 
-    def __init__(self, path: Path, kind: str, own: Sequence[str], marks: Sequence[str]):
+    def __init__(self, path: Path, kind: str, own: Sequence[str], mark: str, keys: Collection[str]):
         self.path = path
         self._kind = kind
-        self._own = [*(name for name in own if name not in marks), *marks]  # marks go last: half-cleared is still a run
-        self._marks = marks
+        self._own = [*(name for name in own if name != mark), mark]  # it goes last: half-cleared is still a run
+        self._mark, self._keys = path / mark, keys
         self._lock_path = path / '.lock'
         self._lock: IO[bytes] | None = None
 
     @property
     def holds_run(self) -> bool:
         """Whether there is a run."""
-        return any((self.path / mark).exists() for mark in self._marks)
+        try:
+            content = json.loads(self._mark.read_text(encoding='utf-8'))
+        except (OSError, ValueError, RecursionError):
+            return False
+        return isinstance(content, dict) and all(key in content for key in self._keys)
 
     def begin(self, overwrite: bool = False) -> None:
         """Make the folder, claim it, and remove what an earlier run wrote. Nothing is touched when it is refused.
@@ -116,11 +122,19 @@ class RunFolder:
             raise RunFolderError(f'{self.path} is not empty and no {self._kind}: choose another folder')
 
     def _clear(self) -> None:
-        for child in (self.path / name for name in self._own):
-            if child.is_dir() and not child.is_symlink():
-                shutil.rmtree(child)
-            else:
-                child.unlink(missing_ok=True)
+        """Remove what a run has written; folders within stay where somebody else's files are in them."""
+        folders = [self.path / folder for folder in sorted({str(Path(name).parent) for name in self._own} - {'.'})]
+        for folder in folders:
+            if folder.is_symlink():
+                folder.unlink()
+        for name in self._own:
+            found = self.path.glob(name) if '*' in name else [self.path / name]
+            for file in found:
+                if file.is_symlink() or file.is_file():
+                    file.unlink()
+        for folder in folders:
+            with suppress(OSError):  # not empty, or not there
+                folder.rmdir()
 
     def _cannot_write(self, error: OSError) -> RunFolderError:
         return RunFolderError(f'cannot write the {self._kind} folder {self.path}: {error.strerror}')

@@ -27,18 +27,34 @@ def folder(tmp_path):
     path = tmp_path / 'run'
     (path / 'logs').mkdir(parents=True)
     (path / 'logs' / 'old.txt').write_text('old')
-    (path / 'run.json').write_text('old')
+    (path / 'run.json').write_text('{"seed": 1}')
     (path / 'notes.txt').write_text('mine')
     return path
 
 
 def run_in(path):
-    return RunFolder(path, 'run', own=('run.json', 'logs'), marks=('run.json',))
+    return RunFolder(path, 'run', own=('logs/*.txt', 'report.html'), mark='run.json', keys=['seed'])
 
 
 def test_only_what_a_run_writes_is_removed(folder):
     run_in(folder).begin(overwrite=True)
     assert sorted(child.name for child in folder.iterdir()) == ['.lock', 'notes.txt']
+
+
+@pytest.mark.parametrize('content', ['{"editor.fontSize": 12}', '["seed"]', '{', '', '[' * 3000])
+def test_a_file_of_the_same_name_is_no_run(folder, content):
+    (folder / 'run.json').write_text(content)
+    with pytest.raises(RunFolderError, match='not empty and no run'):
+        run_in(folder).begin(overwrite=True)
+    assert (folder / 'run.json').read_text() == content and (folder / 'logs' / 'old.txt').exists()
+
+
+def test_files_of_others_within_the_folders_of_a_run_stay(folder):
+    (folder / 'logs' / 'mine.pdf').write_text('mine')
+    (folder / 'logs' / 'mine.txt').mkdir()
+    run_in(folder).begin(overwrite=True)
+    assert sorted(child.name for child in (folder / 'logs').iterdir()) == ['mine.pdf', 'mine.txt']
+    assert not (folder / 'run.json').exists()
 
 
 def test_a_link_is_removed_and_not_what_it_leads_to(folder, tmp_path):

@@ -84,11 +84,12 @@ def _check_options(args: argparse.Namespace, chosen: Preset) -> None:
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:
     """The folder as the options say, for this process alone."""
-    folder = RunFolder(args.output, 'run', own=(POLICY_NAME, TABLE_NAME, TENSORBOARD_NAME, RUN_NAME),
-                       marks=(RUN_NAME,))
+    folder = RunFolder(args.output, 'run', own=(POLICY_NAME, TABLE_NAME, f'{TENSORBOARD_NAME}/events.out.tfevents.*'),
+                       mark=RUN_NAME, keys=('preset', 'tutor', 'seed'))
     if args.resume:
-        if not folder.holds_run:
+        if not (args.output / RUN_NAME).exists():
             raise TrainingError(f'--resume: there is no run in {args.output}: leave --resume out to begin one')
+        read_run(args.output)
         folder.claim()
     else:
         if folder.holds_run and not args.overwrite:

@@ -137,13 +137,14 @@ def test_overwriting_removes_what_a_run_writes_and_nothing_else(tmp_path, monkey
     short = ('--episodes', 1, '--evaluate-every', 0, '--output', tmp_path)
     assert command(monkeypatch, *short) == 0
     (tmp_path / 'notes.txt').write_text('mine')
-    (tmp_path / 'tensorboard' / 'old').write_text('')
+    for name in ('events.out.tfevents.1', 'mine.txt'):
+        (tmp_path / 'tensorboard' / name).write_text('')
     written = (tmp_path / 'run.json').read_text()
     assert command(monkeypatch, *short, '--overwrite', '--seed', -1) == 2
     assert (tmp_path / 'run.json').read_text() == written, 'refused options leave the earlier run'
     with monkeypatch.context() as patch:
         patch.setattr('shared_control_learning.train_command.train', lambda *_, **__: pytest.fail('two writers'))
-        other = RunFolder(tmp_path, 'run', (), ())
+        other = RunFolder(tmp_path, 'run', (), 'run.json', ())
         other.claim()
         for choice in (['--overwrite'], ['--resume', tmp_path]):
             assert command(patch, *short, *choice) == 2
@@ -152,7 +153,8 @@ def test_overwriting_removes_what_a_run_writes_and_nothing_else(tmp_path, monkey
     assert (tmp_path / 'run.json').read_text() == written
     assert command(monkeypatch, *short, '--overwrite') == 0
     assert (tmp_path / 'notes.txt').read_text() == 'mine'
-    assert not (tmp_path / 'tensorboard' / 'old').exists()
+    assert not (tmp_path / 'tensorboard' / 'events.out.tfevents.1').exists()
+    assert (tmp_path / 'tensorboard' / 'mine.txt').exists()
 
 
 def test_a_run_that_was_killed_in_its_first_episode_can_be_overwritten_and_resumed(tmp_path):
@@ -206,7 +208,11 @@ def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
     (('--preset', 'autonomous', '--profile', 'low'), 'autonomous has no tutor'),
     (('--episodes', '0'), 'at least 1'),
     (('--resume', '.'), 'there is no run'),
+    (('--resume', 'damaged'), 'run.json is no run'),
 ])
 def test_command_refuses(arguments, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'damaged').mkdir()
+    (tmp_path / 'damaged' / 'run.json').write_text('{')
     assert command(monkeypatch, '--output', tmp_path / 'run', *arguments) == 2
     assert message in capsys.readouterr().err

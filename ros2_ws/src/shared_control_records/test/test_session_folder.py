@@ -20,13 +20,16 @@ import sys
 
 import pytest
 from shared_control.run_folder import RunFolderError
+from shared_control_learning.episode_table import TABLE_NAME, UNFINISHED_NAME
+from shared_control_learning.policy_file import POLICY_NAME
+from shared_control_learning.practice import PRACTICE_NAME
 from shared_control_records.session.folder import SessionFolder
 
 
 def finished(path):
     """A folder that another session has left."""
     folder = SessionFolder.create(path)
-    folder.settings.write_text('{}')
+    folder.write_settings({'tutor': 'keyboard'})
     folder.report.write_text('old')
     folder.bag.mkdir()
     folder.release()
@@ -54,7 +57,7 @@ def test_an_earlier_session_is_kept_unless_told_otherwise(tmp_path):
 
 def test_a_folder_that_is_left_half_made_is_a_session(tmp_path):
     (tmp_path / 'session').mkdir()
-    SessionFolder.create(tmp_path / 'session', settings={'preset': 'coached'}).release()
+    SessionFolder.create(tmp_path / 'session', settings={'tutor': 'keyboard'}).release()
     assert SessionFolder.open(tmp_path / 'session').holds_run
     SessionFolder.create(tmp_path / 'session', overwrite=True)
 
@@ -64,6 +67,34 @@ def test_what_is_no_session_is_never_overwritten(tmp_path):
     with pytest.raises(RunFolderError, match='no session'):
         SessionFolder.create(tmp_path, overwrite=True)
     assert [child.name for child in tmp_path.iterdir()] == ['thesis.tex']
+
+
+def test_a_project_with_settings_of_its_own_is_no_session(tmp_path):
+    for name in ('settings.json', 'report.html', 'log/mine.txt', 'learner/notes.txt', 'bag/bag_0.mcap'):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text('{"editor.fontSize": 12}')
+    before = sorted(tmp_path.rglob('*'))
+    with pytest.raises(RunFolderError, match='not empty and no session'):
+        SessionFolder.create(tmp_path, overwrite=True)
+    assert sorted(tmp_path.rglob('*')) == before
+    for path in sorted((tmp_path / 'bag').iterdir()) + [tmp_path / 'bag']:
+        path.rmdir() if path.is_dir() else path.unlink()
+    with pytest.raises(RunFolderError, match='is no session folder'):
+        SessionFolder.open(tmp_path)
+
+
+def test_files_that_somebody_put_into_a_session_outlive_it(tmp_path):
+    folder = finished(tmp_path)
+    for name in (POLICY_NAME, TABLE_NAME, UNFINISHED_NAME, PRACTICE_NAME):
+        (folder.learner / name).write_text('old')
+    (folder.logs / 'torque_ctrl_node.log').write_text('old')
+    (folder.bag / 'bag_0.mcap').write_text('old')
+    mine = [inner / 'mine.txt' for inner in (folder.bag, folder.learner, folder.logs)]
+    for path in mine:
+        path.write_text('mine')
+    new = SessionFolder.create(tmp_path, overwrite=True)
+    assert sorted(path for path in tmp_path.rglob('*') if path.is_file() and path.name != '.lock') == sorted(mine)
+    assert new.learner.is_dir() and new.logs.is_dir()
 
 
 def test_a_file_in_the_way(tmp_path):
@@ -90,7 +121,7 @@ def test_opening_an_earlier_session(tmp_path):
     SessionFolder.open(path).claim()
     with pytest.raises(RunFolderError, match='there is no session folder'):
         SessionFolder.open(path / 'nowhere')
-    with pytest.raises(RunFolderError, match=r'neither settings\.json nor bag'):
+    with pytest.raises(RunFolderError, match=r'neither .*settings\.json nor bag'):
         SessionFolder.open(path / 'learner')
 
 

@@ -23,6 +23,12 @@ import yaml
 from shared_control.files import write_atomically
 from shared_control.run_folder import RunFolder, RunFolderError
 
+_OF_THE_NODES = (
+    'bag/bag_*.mcap', 'bag/bag_*.mcap.tmp', 'bag/metadata.yaml', 'bag/metadata.yaml.tmp',
+    'learner/episodes.csv', 'learner/unfinished.csv', 'learner/practice.json', 'learner/policy.safetensors',
+    'learner/policy.json', 'log/*.log')
+"""What recorder, learner and nodes write. Their modules take seconds to load, so the names stand here once more."""
+
 
 class SessionFolder(RunFolder):
     """Paths of everything that a session keeps. Make one with :meth:`create` or :meth:`open`."""
@@ -54,10 +60,10 @@ class SessionFolder(RunFolder):
         """The report, self-contained."""
         self.ending = path / 'ending.json'
         """What is being done after the teaching; there until the session is over, for its page."""
-        own = (self.bag, self.learner, self.logs, self.given_parameters, self.parameters, self.settings, self.test,
-               self.summary, self.picture, self.picture.with_suffix('.svg'), self.picture.with_suffix('.pdf'),
-               self.report, self.ending)
-        super().__init__(path, 'session', [child.name for child in own], [self.bag.name, self.settings.name])
+        files = (self.given_parameters, self.parameters, self.test, self.summary, self.picture,
+                 self.picture.with_suffix('.svg'), self.picture.with_suffix('.pdf'), self.report, self.ending)
+        super().__init__(
+            path, 'session', [*(file.name for file in files), *_OF_THE_NODES], self.settings.name, keys=['tutor'])
 
     @classmethod
     def create(cls, path: str | Path, overwrite: bool = False,
@@ -77,8 +83,8 @@ class SessionFolder(RunFolder):
         try:
             if settings is not None:
                 folder.write_settings(settings)
-            folder.learner.mkdir()
-            folder.logs.mkdir()
+            folder.learner.mkdir(exist_ok=True)
+            folder.logs.mkdir(exist_ok=True)
         except OSError as error:
             folder.release()
             raise RunFolderError(f'cannot write the session folder {folder.path}: {error.strerror}') from error
@@ -95,8 +101,10 @@ class SessionFolder(RunFolder):
         if not folder.path.is_dir():
             raise RunFolderError(f'there is no session folder {folder.path}: sessions are in out/sessions, '
                                  'unless --output said another place')
-        if not folder.holds_run:
-            raise RunFolderError(f'{folder.path} is no session folder: it has neither settings.json nor bag/')
+        if not folder.holds_run and not folder.bag.exists():
+            folder.read_json(folder.settings)  # names it when it is damaged
+            raise RunFolderError(
+                f"{folder.path} is no session folder: it has neither a session's settings.json nor bag/")
         return folder
 
     def write_settings(self, settings: Mapping[str, Any]) -> None:
