@@ -27,6 +27,7 @@ from importlib.metadata import EntryPoint, entry_points
 
 from .command_line import add_parser, make_parser
 from .extras import missing
+from .printable import escaped
 from .streams import lossy_output, open_closed_streams
 
 ORDER = ('session', 'replay', 'report', 'view', 'export', 'recover', 'train', 'evaluate', 'tutors', 'study', 'validate',
@@ -72,7 +73,7 @@ def _run() -> int:
         print(f'shared-control: {missing("the command", error)}', file=sys.stderr)
         return 2
     except (ValueError, OSError) as error:
-        print(f'shared-control: {error}', file=sys.stderr)
+        print(f'shared-control: {escaped(str(error))}', file=sys.stderr)
         return 2
 
 

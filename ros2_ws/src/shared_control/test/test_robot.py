@@ -14,6 +14,8 @@
 
 """Robots from their files: the Panda's numbers to the bit, and errors that name the file and the key."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 import yaml
@@ -74,6 +76,12 @@ SEVEN = [1.0] * 7
     ({'gains': {'soft': {'kp': SEVEN, 'kd': SEVEN}}}, "gains: expected gains by name, 'task' among them"),
     ({'gains': {'task': {'kp': SEVEN}}}, 'gains.task: expected kp and kd'),
     ({'gains': {'task': {'kp': SEVEN, 'kd': [*SEVEN[1:], -1.0]}}}, 'gains.task.kd: a gain is not above 0'),
+    ({'gains': {'task': {'kp': SEVEN, 'kd': SEVEN}, 3: {'kp': SEVEN, 'kd': SEVEN}}}, 'gains: expected gains by name'),
+    ({'torque_rate_max': 10**400}, 'torque_rate_max: expected a finite number above 0'),
+    ({'q_max': [*SEVEN[1:], 10**400]}, 'q_max: a number is not finite, or above 1000000'),
+    ({'q_max_deg': [*SEVEN[1:], 1e300]}, 'q_max_deg: is given beside q_max'),
+    ({'urdf': 'x' * 5000}, 'urdf: .*too long'),
+    ({'urdf': '~nobody_of_that_name/arm.urdf'}, 'urdf: '),
     ({'colour': 'white'}, 'colour: there is no such key; there are base_frame'),
 ])
 def test_what_is_wrong_is_named_with_file_and_key(tmp_path, change, message):
@@ -81,6 +89,48 @@ def test_what_is_wrong_is_named_with_file_and_key(tmp_path, change, message):
     path.write_text(yaml.safe_dump(yaml.safe_load(PANDA.read_text()) | change))
     with pytest.raises(RobotFileError, match=rf'broken\.yaml: {message}'):
         load_robot(str(path))
+
+
+@pytest.mark.parametrize(('text', 'message'), [
+    ('[' * 3000, 'cannot read the robot file'),
+    ('q_min: [' + '1' * 5000 + ']', 'cannot read the robot file'),
+    ('#' * 2**21, 'more than 1048576 bytes'),
+    ('a: &a {b: 1}\nc: {<<: *a}', 'line 2: merge keys'),
+    ('joints: &a [*a, *a]', 'joints: expected a list of names'),
+    ('"\\e[31mred": 1', r'\\x1b\[31mred: there is no such key'),
+    ('joints: ["\\e[31mred", 1]', 'joints: expected a list of names'),
+    ('urdf: "\\e[31mred"', 'is missing'),
+    ('!%1b[31mred {}', 'cannot read the robot file'),
+    ('a: {b: {c: {d: {e: [' + '1, ' * 10_000 + ']}}}}', 'a: there is no such key'),
+])
+def test_what_a_strange_file_says_is_told_short_and_harmless(tmp_path, text, message):
+    path = tmp_path / 'strange.yaml'
+    path.write_text(text)
+    with pytest.raises(RobotFileError, match=message) as error:
+        load_robot(str(path))
+    assert '\x1b' not in str(error.value) and len(str(error.value)) < 1000
+
+
+@pytest.mark.parametrize('change', [
+    {'urdf': '\x1b[31mred.urdf'}, {'base_frame': '\x1b[31mred'}, {'joints': ['\x1b[31mred']},
+    {'gains': {'task': {'kp': SEVEN, 'kd': SEVEN}, '\x1b[31mred': {'kp': 1, 'kd': 2}}}])
+def test_control_characters_of_a_file_reach_no_terminal(tmp_path, change):
+    path = tmp_path / 'strange.yaml'
+    path.write_text(yaml.safe_dump(yaml.safe_load(PANDA.read_text()) | change))
+    with pytest.raises(RobotFileError, match=r'\\x1b\[31mred') as error:
+        load_robot(str(path))
+    assert '\x1b' not in str(error.value)
+
+
+@pytest.mark.parametrize('levels', [9, 30])
+def test_aliases_are_not_expanded(tmp_path, levels):
+    path = tmp_path / 'bomb.yaml'
+    names = [f'l{level}' for level in range(levels)]
+    path.write_text('joints:\n- &l0 [x, x]\n' + ''.join(
+        f'- &{name} [{", ".join(9 * [f"*{below}"])}]\n' for below, name in pairwise(names)))
+    with pytest.raises(RobotFileError, match='joints: expected a list of names') as error:
+        load_robot(str(path))
+    assert len(str(error.value)) < 1000
 
 
 def test_a_missing_key_or_file_is_named(tmp_path):

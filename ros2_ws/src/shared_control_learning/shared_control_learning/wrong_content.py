@@ -14,47 +14,32 @@
 
 """What is wrong with the content of a file, in words that are safe to print however long or strange it is."""
 
-import reprlib
 from collections.abc import Mapping
 from typing import Any
 
 from pydantic import ValidationError
+from shared_control.printable import cut, escaped, shortened
 
 PROBLEMS_MAX = 3
-ECHO_MAX = 100
-"""Characters of content that are repeated."""
 REASON_MAX = 500
 """Characters of a reason."""
 _WORDS = {
     'missing': 'is missing', 'unexpected_keyword_argument': 'is not known', 'extra_forbidden': 'is not known',
     'model_type': 'should be keys with values', 'dataclass_type': 'should be keys with values'}
-_repr = reprlib.Repr()
-_repr.maxlevel, _repr.maxstring, _repr.maxother = 3, ECHO_MAX, ECHO_MAX
 
 
 def what_is_wrong(error: Exception) -> str:
     """An error in words; of pydantic's the first problems, with the key's path, what is expected and what is there."""
     if isinstance(error, ValidationError):
-        return '; '.join(_problem(problem) for problem in error.errors(include_url=False)[:PROBLEMS_MAX])
-    return _cut(str(error) or type(error).__name__, REASON_MAX)
-
-
-def shortened(value: Any) -> str:
-    """The repr of a value, cut: control characters are escaped in it, and nested content is not expanded."""
-    try:
-        return _cut(_repr.repr(value), ECHO_MAX)
-    except ValueError:  # Python does not print whole numbers of more than 4300 digits
-        return 'a very large number'
+        return escaped('; '.join(
+            _problem(problem) for problem in error.errors(include_url=False)[:PROBLEMS_MAX]))
+    return escaped(cut(str(error) or type(error).__name__, REASON_MAX))
 
 
 def _problem(problem: Mapping[str, Any]) -> str:
     kind = problem['type']
     path = '.'.join(shortened(key).strip('\'"') for key in problem['loc'] if key != '[key]')
-    reason = _cut(_WORDS.get(kind, problem['msg'].removeprefix('Value error, ')), REASON_MAX)
+    reason = cut(_WORDS.get(kind, problem['msg'].removeprefix('Value error, ')), REASON_MAX)
     if kind not in ('missing', 'value_error', 'json_invalid'):
         reason += f', found {shortened(problem["input"])}'
     return f'{path}: {reason}' if path else reason
-
-
-def _cut(text: str, most: int) -> str:
-    return text if len(text) <= most else f'{text[:most - 3]}...'

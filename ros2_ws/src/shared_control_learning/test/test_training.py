@@ -208,6 +208,7 @@ def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
     (('--preset', 'autonomous', '--profile', 'low'), 'autonomous has no tutor'),
     (('--episodes', '0'), 'at least 1'),
     (('--resume', '.'), 'there is no run'),
+    (('--resume', '\x1b[31mred'), r'no run in \x1b[31mred'),
     (('--resume', 'damaged'), 'run.json is no run'),
 ])
 def test_command_refuses(arguments, message, tmp_path, monkeypatch, capsys):

@@ -27,7 +27,7 @@ from shared_control.cli import main
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.files import find_bag
-from shared_control_records.bag.reader import BagReadError, read_bag
+from shared_control_records.bag.reader import BagReadError, read_bag, recorded_namespace
 from shared_control_testing import rosbag2
 from shared_control_testing import sessions as made
 
@@ -114,6 +114,12 @@ def test_a_bag_of_several_robots_names_them(own, tmp_path):
         '/joint_states': '/a/joint_states', '/ball': '/b/joint_states'}.get(topic, topic))
     with pytest.raises(BagReadError, match=r'several robots \(/a, /b\)'):
         read_bag(bag)
+
+
+def test_names_in_a_bag_are_told_short_and_harmless(tmp_path):
+    with pytest.raises(BagReadError, match=r'several robots \(/\\x1b\[31mred') as error:
+        recorded_namespace(tmp_path, [f'/\x1b[31mred{number}/joint_states' for number in range(1000)])
+    assert '\x1b' not in str(error.value) and len(str(error.value)) < 1000
 
 
 def test_a_burst_of_late_messages_is_no_false_alarm(own, tmp_path):

@@ -25,6 +25,7 @@ import numpy as np
 import yaml
 
 from ..plugins import ROBOTS, load
+from ..printable import ECHO_MAX, cut, escaped, shortened
 from .spec import Gains, RobotSpec
 
 _VECTORS = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'torque_max', 'home')
@@ -33,6 +34,12 @@ _ANGLES = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'home')
 _POSITIVE = ('qd_max', 'qdd_max', 'torque_max')
 _TEXTS = ('urdf', 'base_frame', 'tool_frame')
 _PACKAGE = 'package://'
+SIZE_MAX = 2**20
+"""Bytes; a robot takes less than two thousand."""
+LARGEST = 1e6
+"""Of all numbers: angles, rates, torques, gains."""
+_REASON_MAX = 500
+"""Characters."""
 
 
 class RobotFileError(ValueError):
@@ -63,10 +70,23 @@ def panda() -> RobotSpec:
 
 def _read(path: Path, name: str) -> RobotSpec:
     try:
-        content = yaml.safe_load(path.read_text(encoding='utf-8'))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise RobotFileError(f'cannot read the robot file {path}: {error}') from error
+        with path.open('rb') as file:
+            text = file.read(SIZE_MAX + 1)
+        if len(text) > SIZE_MAX:
+            raise ValueError(f'more than {SIZE_MAX} bytes are no robot')
+        content = yaml.load(text.decode(), _Loader)
+    except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
+        raise RobotFileError(escaped(f'cannot read the robot file {path}: {cut(str(error), _REASON_MAX)}')) from error
     return _File(path, content).spec(name)
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML without merge keys: robots need none, and a few of them can stand for more than a memory holds."""
+
+    def flatten_mapping(self, node: yaml.MappingNode) -> None:
+        for key, _ in node.value:
+            if key.tag == 'tag:yaml.org,2002:merge':
+                raise ValueError(f'line {key.start_mark.line + 1}: merge keys (<<) are not for robots')
 
 
 class _File:
@@ -78,11 +98,12 @@ class _File:
             raise RobotFileError(f'{path}: expected keys and values, got {type(content).__name__}')
         known = {*_TEXTS, *_VECTORS, *(f'{key}_deg' for key in _ANGLES), 'joints', 'torque_rate_max', 'gains'}
         if unknown := [key for key in content if key not in known]:
-            raise self._error(unknown[0], f'there is no such key; there are {", ".join(sorted(known))}')
+            key = shortened(unknown[0]).strip('\'"')
+            raise self._error(key, f'there is no such key; there are {", ".join(sorted(known))}')
         self._content = content
 
     def _error(self, key: object, what: str) -> RobotFileError:
-        return RobotFileError(f'{self._path}: {key}: {what}')
+        return RobotFileError(escaped(f'{self._path}: {cut(str(key), ECHO_MAX)}: {cut(what, _REASON_MAX)}'))
 
     def spec(self, name: str) -> RobotSpec:
         """The whole file, checked."""
@@ -104,56 +125,61 @@ class _File:
     def _text(self, key: str) -> str:
         value = self._get(key)
         if not isinstance(value, str) or not value:
-            raise self._error(key, f'expected a text, got {value!r}')
+            raise self._error(key, f'expected a text, got {shortened(value)}')
         return value
 
     def _joints(self) -> tuple[str, ...]:
         joints = self._get('joints')
         if not isinstance(joints, list) or not joints or not all(isinstance(joint, str) for joint in joints):
-            raise self._error('joints', f'expected a list of names, got {joints!r}')
+            raise self._error('joints', f'expected a list of names, got {shortened(joints)}')
         if len(set(joints)) < len(joints):
-            raise self._error('joints', f'a name occurs twice among {joints}')
+            raise self._error('joints', f'a name occurs twice among {shortened(joints)}')
         return tuple(joints)
 
     def _urdf(self, text: str) -> Path:
-        if not text.startswith(_PACKAGE):
-            path = self._path.parent / Path(text).expanduser()
-        else:
-            package, _, inside = text.removeprefix(_PACKAGE).partition('/')
-            if not package.isidentifier() or find_spec(package) is None:
-                raise self._error('urdf', f'there is no Python package {package!r}')
-            path = Path(str(files(package) / inside))
-        if not path.is_file():
+        try:
+            if not text.startswith(_PACKAGE):
+                path = self._path.parent / Path(text).expanduser()
+            else:
+                package, _, inside = text.removeprefix(_PACKAGE).partition('/')
+                if not package.isidentifier() or find_spec(package) is None:
+                    raise self._error('urdf', f'there is no Python package {shortened(package)}')
+                path = Path(str(files(package) / inside))
+            is_there = path.is_file()
+        except (OSError, RuntimeError) as error:  # a name that is too long, ~ of nobody
+            raise self._error('urdf', str(error)) from error
+        if not is_there:
             raise self._error('urdf', f'there is no file {path}')
         return path
 
     def _check_urdf(self, urdf: Path, joints: tuple[str, ...], base_frame: str, tool_frame: str) -> None:
         try:
             robot = ElementTree.parse(urdf).getroot()
-        except ElementTree.ParseError as error:
+        except (ElementTree.ParseError, ValueError, LookupError) as error:  # the latter of encodings
             raise self._error('urdf', f'{urdf} is not XML: {error}') from error
         movable = [str(joint.get('name')) for joint in robot.iter('joint') if joint.get('type') not in (None, 'fixed')]
         if missing := [joint for joint in joints if joint not in movable]:
-            raise self._error('joints', f'{missing[0]!r} is no movable joint of {urdf}, which has {movable}')
+            raise self._error('joints', f'{shortened(missing[0])} is no movable joint of {urdf}, which has {movable}')
         if others := [joint for joint in movable if joint not in joints]:
-            raise self._error('joints', f'{others[0]!r} of {urdf} is missing: it moves, too')
+            raise self._error('joints', f'{shortened(others[0])} of {urdf} is missing: it moves, too')
         links = {str(link.get('name')) for link in robot.findall('link')}
         for key, frame in (('base_frame', base_frame), ('tool_frame', tool_frame)):
             if frame not in links:
-                raise self._error(key, f'{urdf} has no link {frame!r}')
+                raise self._error(key, f'{urdf} has no link {shortened(frame)}')
         children = {child.get('link') for child in robot.iterfind('joint/child')}
         if base_frame in children:
             root = ', '.join(map(repr, links - children))
-            raise self._error('base_frame', f'{base_frame!r} hangs on another link of {urdf}, whose root is {root}')
+            raise self._error(
+                'base_frame', f'{shortened(base_frame)} hangs on another link of {urdf}, whose root is {root}')
 
     def _numbers(self, key: str, value: Any, count: int) -> np.ndarray:
-        """Finite numbers, one a joint."""
+        """Numbers of at most ``LARGEST``, one a joint."""
         if not isinstance(value, list) or not all(type(number) in (int, float) for number in value):
-            raise self._error(key, f'expected a list of numbers, got {value!r}')
+            raise self._error(key, f'expected a list of numbers, got {shortened(value)}')
         if len(value) != count:
             raise self._error(key, f'has {len(value)} numbers for {count} joints')
-        if not np.isfinite(value).all():
-            raise self._error(key, f'a number is not finite: {value}')
+        if not all(abs(number) <= LARGEST for number in value):
+            raise self._error(key, f'a number is not finite, or above {LARGEST:.0f}: {shortened(value)}')
         return np.array(value, float)
 
     def _vector(self, key: str, count: int) -> np.ndarray:
@@ -177,19 +203,21 @@ class _File:
 
     def _rate(self) -> float:
         rate = self._get('torque_rate_max')
-        if type(rate) not in (int, float) or not 0.0 < rate < np.inf:
-            raise self._error('torque_rate_max', f'expected a finite number above 0, got {rate!r}')
+        if type(rate) not in (int, float) or not 0.0 < rate <= LARGEST:
+            raise self._error(
+                'torque_rate_max',
+                f'expected a finite number above 0, at most {LARGEST:.0f}, got {shortened(rate)}')
         return float(rate)
 
     def _gains(self, count: int) -> dict[str, Gains]:
         gains = self._get('gains')
-        if not isinstance(gains, dict) or 'task' not in gains:
+        if not isinstance(gains, dict) or 'task' not in gains or not all(isinstance(name, str) for name in gains):
             raise self._error('gains', "expected gains by name, 'task' among them")
-        return {str(name): self._gain(f'gains.{name}', entry, count) for name, entry in gains.items()}
+        return {name: self._gain(f'gains.{name}', entry, count) for name, entry in gains.items()}
 
     def _gain(self, key: str, entry: Any, count: int) -> Gains:
         if not isinstance(entry, dict) or set(entry) != {'kp', 'kd'}:
-            raise self._error(key, f'expected kp and kd, got {entry!r}')
+            raise self._error(key, f'expected kp and kd, got {shortened(entry)}')
         values = {part: self._numbers(f'{key}.{part}', entry[part], count) for part in ('kp', 'kd')}
         for part, numbers in values.items():
             if (numbers <= 0.0).any():

@@ -31,6 +31,7 @@ from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
 from shared_control.contract import Topic
 from shared_control.keys import KeyPresses
+from shared_control.printable import ECHO_MAX, cut, escaped
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
 from shared_control.sticks import StickMoment
@@ -119,7 +120,7 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
     except BagReadError:
         raise
     except Exception as error:  # a damaged file makes rosbags and the decompressor raise errors of many kinds
-        raise BagReadError(f'cannot read the bag {path}: {error or type(error).__name__}') from error
+        raise BagReadError(f'cannot read the bag {path}: {escaped(str(error)) or type(error).__name__}') from error
 
 
 def _check_finished(path: Path) -> None:
@@ -144,8 +145,9 @@ def recorded_namespace(bag: Path, topics: Iterable[str]) -> str:
     if '' in found or not found:
         return ''
     if len(found) > 1:
-        raise BagReadError(f'the bag {bag} has the topics of several robots ({", ".join(found)}): make a bag of '
-                           'each with `ros2 bag convert`')
+        robots = escaped(cut(', '.join(found), ECHO_MAX))
+        raise BagReadError(f'the bag {bag} has the topics of several robots ({robots}): make a bag of each '
+                           'with `ros2 bag convert`')
     return found[0]
 
 

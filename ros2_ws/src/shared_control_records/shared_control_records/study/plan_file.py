@@ -20,9 +20,9 @@ from typing import Annotated, Any, Literal, get_args
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, field_validator, model_validator
 from shared_control.plugins import WORLDS, names
+from shared_control.printable import shortened
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.presets import preset, preset_for
-from shared_control_learning.wrong_content import shortened
 
 Test = Literal['randomized', 'perturbation', 'trajectory', 'transfer']
 TESTS: tuple[Test, ...] = get_args(Test)
