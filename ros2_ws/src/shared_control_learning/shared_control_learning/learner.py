@@ -18,6 +18,7 @@ from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
+from shared_control.printable import ECHO_MAX, cut, escaped
 from shared_control.tasks.task import Task
 
 from .episode import Episode
@@ -81,8 +82,9 @@ def check_tensors(tensors: 'Mapping[str, torch.Tensor]', like: 'Mapping[str, tor
         ValueError: they are not; the message names one that is wrong.
     """
     if tensors.keys() != like.keys():
-        raise ValueError(f'it should hold the tensors {", ".join(sorted(like))}; these differ: '
-                         f'{", ".join(sorted(tensors.keys() ^ like.keys()))}')
+        others = ', '.join(sorted(tensors.keys() ^ like.keys()))
+        raise ValueError(f'these tensors differ: {escaped(cut(others, ECHO_MAX))}; it should hold '
+                         f'{", ".join(sorted(like))}')
     rows = min((len(tensors[name]) for name in growing if tensors[name].dim()), default=0)
     for name, tensor in tensors.items():
         own = like[name]

@@ -31,6 +31,7 @@ from safetensors.torch import save
 from shared_control.env import action_space, observation_space
 from shared_control.files import write_atomically
 from shared_control.plugins import TASKS, load
+from shared_control.printable import shortened
 from shared_control.tasks.task import Task
 
 from .learner import Learner
@@ -95,10 +96,8 @@ def load_policy(path: Path) -> Learner:
         learner.restore(tensors)
     except PolicyFileError:
         raise
-    except pydantic.ValidationError as error:
+    except (SafetensorError, OSError, ValueError, TypeError, ArithmeticError) as error:
         raise PolicyFileError(f'{path} is no usable policy: {what_is_wrong(error)}') from error
-    except (SafetensorError, OSError, ValueError, TypeError) as error:
-        raise PolicyFileError(f'{path} is no usable policy: {error}') from error
     return learner
 
 
@@ -119,10 +118,10 @@ def read_description(path: Path) -> dict[str, Any]:
     except KeyError as error:
         raise PolicyFileError(f'{path} is no policy: its header has no {error}') from error
     except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
-        raise PolicyFileError(f'{path} is no policy: {error}') from error
+        raise PolicyFileError(f'{path} is no policy: {what_is_wrong(error)}') from error
     if found != FORMAT:
-        raise PolicyFileError(f'{path} is no policy of this version: format {found!r}, expected {FORMAT!r}; teach '
-                              'it anew, or use the version that wrote it')
+        raise PolicyFileError(f'{path} is no policy of this version: format {shortened(found)}, expected {FORMAT!r}; '
+                              'teach it anew, or use the version that wrote it')
     return description
 
 
@@ -133,7 +132,7 @@ def _learner(description: Description) -> Learner:
     settings = _validated(type(known.settings), description.settings, 'settings')
     for name, space in _spaces(task).items():
         if getattr(description, name) != space:
-            raise ValueError(f'{name} is {getattr(description, name)}, expected {space}')
+            raise ValueError(f'{name} is {shortened(getattr(description, name))}, expected {space}')
     made = dataclasses.replace(known, task=task, settings=settings).make(description.seed)
     made.episode = description.episode
     return made

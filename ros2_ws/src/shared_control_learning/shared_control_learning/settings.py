@@ -19,7 +19,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import ConfigDict, Field
 
-Positive = Annotated[float, Field(gt=0, le=1e6)]
+Positive = Annotated[float, Field(ge=1e-9, le=1e6)]
 NotNegative = Annotated[float, Field(ge=0, le=1e6)]
 Fraction = Annotated[float, Field(ge=0, le=1)]
 Layers = Annotated[tuple[Annotated[int, Field(ge=1, le=1024)], ...], Field(max_length=4)]

@@ -90,9 +90,9 @@ def test_a_truncated_file_is_refused(path):
         refused(path, 'is no policy')
 
 
-def change(path, description=lambda d: None, tensors=lambda t: None):
+def change(path, description=lambda d: None, tensors=lambda t: None, name='coached'):
     """Write a good file with something changed in it."""
-    save_policy(COACHED.make(), path)
+    save_policy(preset(name).make(), path)
     stored, words = load(path.read_bytes()), read_description(path)
     description(words)
     tensors(stored)
@@ -125,6 +125,11 @@ def test_a_wrong_description_is_refused(path, edit, reason):
 @pytest.mark.parametrize(('part', 'field', 'value'), [
     ('task', 'observation_scales', [0.1, 0.0, 0.1]), ('task', 'observation_scales', [0.1, 0.1]),
     ('task', 'weight_pitch', -1.0), ('task', 'fall_reward', float('-inf')), ('task', 'episode_seconds', 0.0),
+    *(('task', field, value) for field in ('action_scale', 'moment_limit', 'reward_scale', 'episode_seconds')
+      for value in (1e300, 1e-300)),
+    ('task', 'fall_reward', 1.0), ('task', 'fall_reward', -1e300), ('task', 'fallen_below', 1e300),
+    ('task', 'weight_position', 1e300), ('task', 'rate_centre', -1e300), ('task', 'position_error_max_squared', 1e-300),
+    ('task', 'observation_scales', [0.1, 1e-300, 0.1]), ('ppo', 'learning_rate', 1e-300),
     ('task', 'rate_centre', 10.0), ('task', 'moment_limit', '20'),
     ('ppo', 'batch_size', 1), ('ppo', 'batch_size', True), ('ppo', 'noise_seconds', -0.1), ('ppo', 'epochs', 0),
     ('ppo', 'epochs', 1001), ('ppo', 'learning_rate', 0.0), ('ppo', 'learning_rate_min', -1.0), ('ppo', 'gamma', 1.1),
@@ -140,6 +145,23 @@ def test_settings_out_of_range_are_refused_by_name(path, part, field, value):
 
     change(path, description=lambda d: part_of(d, part).update({field: value}))
     refused(path, rf'\b{field}\b')
+
+
+@pytest.mark.parametrize('field', ['error', 'velocity', 'moment'])
+def test_a_regulator_of_settings_that_overflow_is_refused(path, field):
+    change(path, description=lambda d: d['settings'].update({field: 1e-300}), name='lqr')
+    refused(path, rf'settings\.{field}')
+
+
+@pytest.mark.parametrize('edit', [
+    lambda t: t.update({'\x1b[31mred': torch.zeros(1)}),
+    lambda t: t.update({'\x1b[31mred': torch.full((1,), float('nan'))}),
+    lambda t: t.update({f'\x1b[31mred{number}': torch.zeros(1) for number in range(1000)})])
+def test_names_of_tensors_are_told_short_and_harmless(path, edit):
+    change(path, tensors=edit)
+    with pytest.raises(PolicyFileError, match=r'\\x1b\[31mred') as error:
+        load_policy(path)
+    assert '\x1b' not in str(error.value) and len(str(error.value)) < 1000
 
 
 @pytest.mark.parametrize(('edit', 'reason'), [

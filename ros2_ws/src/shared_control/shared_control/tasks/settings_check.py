@@ -14,22 +14,39 @@
 
 """Whether the numbers that a task can be set to make sense."""
 
-import math
 from collections.abc import Iterable
 
+LARGEST = 1e6
+"""Of any number: beyond it products are no longer finite, and it is a slip or ill will."""
+SMALLEST = 1e-9
+"""Of numbers above 0: something is divided by them."""
+SECONDS_MAX = 3600.0
+"""Of an episode, s."""
+MOMENT_MAX = 1000.0
+"""N m; an arm's torques have limits of their own."""
+
 _RANGES = {
-    'above 0': lambda value: 0.0 < value < math.inf,
-    'of at least 0': lambda value: 0.0 <= value < math.inf,
-    'of at most 0': lambda value: -math.inf < value <= 0.0,
+    'above 0': (SMALLEST, LARGEST),
+    'of at least 0': (0.0, LARGEST),
+    'of at most 0': (-LARGEST, 0.0),
+    'of either sign': (-LARGEST, LARGEST),
+    'of seconds': (SMALLEST, SECONDS_MAX),
+    'of N m': (SMALLEST, MOMENT_MAX),
 }
 
 
 def check_numbers(expected: str, numbers: Iterable[tuple[str, float]]) -> None:
-    """Check named numbers against a range: ``above 0``, ``of at least 0`` or ``of at most 0``, and finite.
+    """Check named numbers against a range.
+
+    Args:
+        expected: ``above 0``, ``of at least 0``, ``of at most 0``, ``of either sign``, ``of seconds``: the length of an
+            episode, or ``of N m``: a moment above 0.
+        numbers: what is checked.
 
     Raises:
         ValueError: one lies outside; the message names it.
     """
+    low, high = _RANGES[expected]
     for name, value in numbers:
-        if not _RANGES[expected](value):
-            raise ValueError(f'{name} is {value}, expected a finite number {expected}')
+        if not low <= value <= high:
+            raise ValueError(f'{name} is {value}, expected a finite number {expected}, {low:g} to {high:g}')

@@ -108,11 +108,11 @@ class Balance(Task):
 
     def __post_init__(self) -> None:
         for expected, names in (
-                ('above 0', ('episode_seconds', 'action_scale', 'moment_limit', 'reward_scale',
-                             'position_error_max_squared')),
+                ('of seconds', ('episode_seconds',)), ('of N m', ('action_scale', 'moment_limit')),
+                ('above 0', ('reward_scale', 'position_error_max_squared')),
                 ('of at least 0', ('weight_pitch', 'weight_velocity', 'weight_margin', 'weight_position',
                                    'weight_manipulability')),
-                ('of at most 0', ('rate_centre',))):
+                ('of at most 0', ('fall_reward', 'rate_centre')), ('of either sign', ('fallen_below',))):
             check_numbers(expected, ((name, getattr(self, name)) for name in names))
         check_numbers('above 0', ((f'observation_scales[{number}]', scale)
                                   for number, scale in enumerate(self.observation_scales or ())))

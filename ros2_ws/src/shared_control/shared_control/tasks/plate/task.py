@@ -99,8 +99,8 @@ class Plate(Task):
 
     def __post_init__(self) -> None:
         for expected, names in (
-                ('above 0', ('episode_seconds', 'action_scale', 'moment_limit', 'reward_scale',
-                             'position_error_max_squared')),
+                ('of seconds', ('episode_seconds',)), ('of N m', ('action_scale', 'moment_limit')),
+                ('above 0', ('reward_scale', 'position_error_max_squared')),
                 ('of at least 0', ('weight_tilt', 'weight_velocity', 'weight_position')),
                 ('of at most 0', ('fall_reward', 'rate_centre'))):
             check_numbers(expected, ((name, getattr(self, name)) for name in names))
