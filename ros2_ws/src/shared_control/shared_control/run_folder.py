@@ -112,6 +112,14 @@ class RunFolder:
             self._lock.close()
             self._lock = None
 
+    def discard(self) -> None:
+        """Remove what a run has written, and the folder when nothing else is in it: a run that came to nothing."""
+        self._clear()
+        self._lock_path.unlink(missing_ok=True)
+        self.release()
+        with suppress(OSError):  # somebody else's files are there
+            self.path.rmdir()
+
     def _check(self, overwrite: bool) -> None:
         """Refuse a folder that may not be written anew."""
         if self.holds_run:

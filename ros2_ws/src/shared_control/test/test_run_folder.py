@@ -57,6 +57,16 @@ def test_files_of_others_within_the_folders_of_a_run_stay(folder):
     assert not (folder / 'run.json').exists()
 
 
+def test_a_run_that_came_to_nothing_leaves_nothing(folder, tmp_path):
+    new = run_in(tmp_path / 'new')
+    new.begin()
+    (tmp_path / 'new' / 'run.json').write_text('{}')
+    new.discard()
+    assert not (tmp_path / 'new').exists()
+    run_in(folder).discard()
+    assert [child.name for child in folder.iterdir()] == ['notes.txt']
+
+
 def test_a_link_is_removed_and_not_what_it_leads_to(folder, tmp_path):
     (tmp_path / 'elsewhere').mkdir()
     (folder / 'logs' / 'old.txt').unlink()

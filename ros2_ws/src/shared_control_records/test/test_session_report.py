@@ -199,6 +199,38 @@ def test_the_bag_alone_gives_the_same_report(folder, tmp_path):
 
 
 @pytest.mark.usefixtures('no_picture')
+@pytest.mark.parametrize(('name', 'content', 'message'), [
+    ('settings.json', '{"preset": 5}', r'settings\.json: preset: .*found 5'),
+    ('settings.json', '{"tutor": "keyboard", "earlier_tutors": null}', r'settings\.json: earlier_tutors'),
+    ('settings.json', '{"tutor": ["keyboard"]}', r'settings\.json: tutor'),
+    ('settings.json', '{', r'settings\.json'),
+    ('summary.json', '{"restarts": "often"}', r'summary\.json: restarts'),
+    ('parameters.yaml', 'torque_ctrl_node: {ros__parameters: {moment_limit: much}}', r'parameters\.yaml: moment_limit'),
+    ('test.json', '{}', r'test\.json'),
+    ('learner/episodes.csv', 'episode,phase\nx,teach\n', r'episodes\.csv, line 2')])
+def test_a_damaged_record_of_a_session_is_named_and_leaves_nothing(folder, tmp_path, name, content, message):
+    theirs = tmp_path / 'theirs.mcap'
+    annotated(next(folder.bag.glob('*.mcap')), theirs, bag_metadata.pack(folder, restarts=1) | {name: content})
+    with pytest.raises(ValueError, match=message) as error:
+        write_bag_report(theirs, tmp_path / 'again')
+    assert str(theirs) in str(error.value)
+    assert not (tmp_path / 'again').exists()
+
+
+@pytest.mark.usefixtures('no_picture')
+def test_an_interrupted_report_of_a_bag_is_not_in_the_way_of_the_next(bag, tmp_path, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr('shared_control_records.session.bag_report.write_report', interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            write_bag_report(bag, tmp_path / 'again')
+    assert write_bag_report(bag, tmp_path / 'again').exists()
+
+
+def interrupted(*_, **__):
+    raise KeyboardInterrupt
+
+
+@pytest.mark.usefixtures('no_picture')
 def test_a_bag_of_a_session_that_was_killed_tells_what_its_topics_do(bag, lessons, tmp_path):
     page = write_bag_report(bag, tmp_path / 'again')
     assert 'The tutor was simulated' in page.read_text()

@@ -16,6 +16,8 @@
 
 from pathlib import Path
 
+from shared_control.run_folder import RunFolderError
+
 from ..bag.reader import read_bag
 from .bag_metadata import unpack
 from .folder import SessionFolder
@@ -23,9 +25,10 @@ from .report import write_report
 
 
 def write_bag_report(bag: Path, output: Path) -> Path:
-    """Draw the session's report again into a new folder ``output``; gives the page.
+    """Draw the session's report again into a new folder ``output``; gives the page. On an error nothing is left there.
 
     Raises:
+        ValueError: what the session kept in the bag is damaged; the message names the bag and the part.
         OSError: the bag cannot be read, or the folder exists already or cannot be written; the message names it.
     """
     content = read_bag(bag)
@@ -34,6 +37,12 @@ def write_bag_report(bag: Path, output: Path) -> Path:
     try:
         unpack(content, folder)
         write_report(folder, bag=content)
-    finally:
-        folder.release()
+    except (ValueError, RunFolderError) as error:
+        folder.discard()
+        what = str(error).replace(f'{folder.path}/', '')
+        raise ValueError(f'the record of the session in {bag} is damaged: {what}') from error
+    except BaseException:  # an interrupt, too: half a report is in the way of the next
+        folder.discard()
+        raise
+    folder.release()
     return folder.report

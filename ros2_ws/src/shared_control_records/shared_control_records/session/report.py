@@ -33,7 +33,7 @@ from .episodes import EpisodeRow, read_episodes
 from .final_test import FinalTest, load_test
 from .folder import SessionFolder
 from .picture import Panel, draw_picture
-from .summary import Summary, summarize
+from .summary import Summary, earlier_restarts, summarize
 
 _PAGE = Path(__file__).parent / 'page.html'
 STYLE_SHEET = Path(__file__).with_name('page.css')
@@ -54,7 +54,7 @@ def write_report(folder: SessionFolder, restarts: int | None = None, bag: Bag | 
         OSError: the same, or the folder cannot be written.
     """
     if restarts is None:
-        restarts = (folder.read_json(folder.summary) or {}).get('restarts')
+        restarts = earlier_restarts(folder)
     bag, bag_error = (bag, None) if bag else _read(folder)
     rows, test = read_episodes(folder.episodes), load_test(folder.test)
     task = bag.task if bag else recorded_task(folder.bag) or BALANCE

@@ -16,10 +16,14 @@
 
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
+import pydantic
+from shared_control.run_folder import RunFolderError
 from shared_control.tasks.task import Task
 from shared_control_learning.episode_table import BROKEN_OFF
+from shared_control_learning.wrong_content import what_is_wrong
 
 from ..bag.checks import check_bag
 from ..bag.reader import Bag
@@ -29,6 +33,7 @@ from .final_test import FinalTest
 from .folder import SessionFolder
 
 CONTROLLER = 'torque_ctrl_node'
+Content = TypeVar('Content', bound=pydantic.BaseModel)
 
 
 @dataclass(frozen=True)
@@ -91,14 +96,17 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
         rows: of the table of episodes.
         test: the final test, if there was one.
         restarts: of nodes that died; None when not known.
+
+    Raises:
+        RunFolderError: a file of the session cannot be used; the message names it.
     """
-    settings = folder.read_json(folder.settings) or {}
+    settings = _usable(_Settings, folder.read_json(folder.settings), folder.settings)
     tutor = _tutors(settings)
     timing = timing_of(bag) if bag else None
     taught = [row for row in rows if row.phase == 'teach' and row.counts]
     broken_off = [row for row in rows if row.phase == BROKEN_OFF]
     return Summary(
-        task=task.name, preset=settings.get('preset'), seed=settings.get('seed'),
+        task=task.name, preset=settings.preset, seed=settings.seed,
         recorded=f'{datetime.fromtimestamp(bag.start_ns // 1_000_000_000, UTC):%Y-%m-%dT%H:%M:%SZ}' if bag else None,
         tutor=tutor,
         simulated_tutor=None if tutor is None else 'simulated' in tutor,
@@ -122,13 +130,55 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
         bag=folder.bag.name if folder.bag.exists() else None, picture=folder.picture.name, report=folder.report.name)
 
 
-def _tutors(settings: dict[str, Any]) -> str | None:
+class _Settings(pydantic.BaseModel):
+    """What a report says of ``settings.json``, which has more."""
+
+    model_config = pydantic.ConfigDict(strict=True)
+
+    preset: str | None = None
+    seed: int | None = None
+    tutor: str | None = None
+    earlier_tutors: list[str] = []
+
+
+class _Earlier(pydantic.BaseModel):
+    """What outlives a report in ``summary.json``."""
+
+    model_config = pydantic.ConfigDict(strict=True)
+
+    restarts: int | None = None
+
+
+class _Controller(pydantic.BaseModel):
+    """What a bag is checked against of the controller's parameters."""
+
+    moment_limit: float = 20.0
+
+
+def earlier_restarts(folder: SessionFolder) -> int | None:
+    """How often a node was started again, as an earlier report says; None when none does.
+
+    Raises:
+        RunFolderError: ``summary.json`` cannot be used.
+    """
+    return _usable(_Earlier, folder.read_json(folder.summary), folder.summary).restarts
+
+
+def _usable(kind: type[Content], content: dict[str, Any] | None, path: Path) -> Content:
+    """The part of a file that a report needs; that of an empty one when it is missing."""
+    try:
+        return kind.model_validate(content or {})
+    except pydantic.ValidationError as error:
+        raise RunFolderError(f'cannot use {path}: {what_is_wrong(error)}') from error
+
+
+def _tutors(settings: _Settings) -> str | None:
     """Who taught; those of earlier parts of a session that went on with another tutor come last."""
-    tutor = settings.get('tutor')
-    return None if tutor is None else ', before that '.join(
-        str(name) for name in [tutor, *reversed(settings.get('earlier_tutors', []))])
+    if settings.tutor is None:
+        return None
+    return ', before that '.join([settings.tutor, *reversed(settings.earlier_tutors)])
 
 
 def _bag_checks(folder: SessionFolder, bag: Bag) -> list[str]:
-    controller = folder.ros_parameters(CONTROLLER)
-    return check_bag(bag, moment_limit=float(controller.get('moment_limit', 20.0)))
+    controller = _usable(_Controller, folder.ros_parameters(CONTROLLER), folder.parameters)
+    return check_bag(bag, moment_limit=controller.moment_limit)
