@@ -171,6 +171,21 @@ def test_the_lerobot_data_set_keeps_the_rules_of_its_layout(frames, tmp_path):
         assert len(stats[name]['mean']) == width and stats[name]['count'] == [sum(STEPS)]
 
 
+@pytest.mark.parametrize('was_there', [False, True])
+def test_an_interrupted_data_set_is_not_in_the_way_of_the_next(frames, tmp_path, monkeypatch, was_there):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    if was_there:
+        (tmp_path / 'set').mkdir()
+    with monkeypatch.context() as patch:
+        patch.setattr('shared_control_records.export.lerobot._write_json', interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            write_lerobot(frames, tmp_path / 'set')
+    assert list(tmp_path.rglob('*.parquet')) == []
+    write_lerobot(frames, tmp_path / 'set')
+
+
 def test_the_command_says_where_and_never_overwrites_what_is_not_its_own(bag, tmp_path, monkeypatch, capsys):
     def run(*arguments):
         monkeypatch.setattr('sys.argv', ['shared-control', 'export', *map(str, arguments)])

@@ -24,6 +24,8 @@ One file each suffices: an hour of teaching takes 20 MB, the format asks for a n
 """
 
 import json
+import shutil
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +87,7 @@ def features(task: Task, with_parts: bool = True) -> dict[str, dict[str, Any]]:
 
 
 def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
-    """Write the data set into ``folder``, which is made.
+    """Write the data set into ``folder``, which is made. On an error, or when it is interrupted, nothing is left there.
 
     Args:
         episodes: of one session or several, of one task.
@@ -97,6 +99,18 @@ def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
     task, with_parts = _common(episodes)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise FileExistsError(f'{folder} exists already: choose another --output')
+    try:
+        _write(episodes, task, with_parts, folder)
+    except BaseException:  # an interrupt, too: half a data set is in the way of the next
+        for part in ('data', 'meta'):
+            shutil.rmtree(folder / part, ignore_errors=True)
+        with suppress(OSError):
+            folder.rmdir()
+        raise
+
+
+def _write(episodes: list[EpisodeFrames], task: Task, with_parts: bool, folder: Path) -> None:
+    """Write all files of a data set."""
     data, episodes_path = (folder / 'data' / _first_file(), folder / 'meta' / 'episodes' / _first_file())
     for path in (data, episodes_path):
         path.parent.mkdir(parents=True, exist_ok=True)
