@@ -12,8 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Streams that are closed (``>&-``), output that nobody reads any more (``| head``, a terminal that has hung up), and
-output that nobody asked for."""
+"""Standard streams that are closed (``>&-``), whose reader is gone (``| head``), or that say what nobody asked for."""
 
 import os
 import sys
