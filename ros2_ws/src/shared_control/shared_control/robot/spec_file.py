@@ -37,7 +37,7 @@ _PACKAGE = 'package://'
 SIZE_MAX = 2**20
 """Bytes; a robot takes less than two thousand."""
 LARGEST = 1e6
-"""Of all numbers: angles, rates, torques, gains."""
+"""The bound of all numbers: angles, rates, torques, gains."""
 _REASON_MAX = 500
 """Characters."""
 

@@ -17,11 +17,11 @@
 from collections.abc import Iterable
 
 LARGEST = 1e6
-"""Of any number: beyond it products are no longer finite, and it is a slip or ill will."""
+"""The bound of any number: beyond it products are no longer finite, and it is a slip or ill will."""
 SMALLEST = 1e-9
-"""Of numbers above 0: something is divided by them."""
+"""The least of numbers above 0: something is divided by them."""
 SECONDS_MAX = 3600.0
-"""Of an episode, s."""
+"""The longest episode, s."""
 MOMENT_MAX = 1000.0
 """N m; an arm's torques have limits of their own."""
 
