@@ -102,6 +102,18 @@ def progress_of(study):
     return Progress.of(folder.person(plan.participant(1)))
 
 
+def test_a_terminal_at_which_nobody_answers_says_how_to_go_on(tmp_path, monkeypatch, capsys):
+    def at_its_end(_=''):
+        raise EOFError
+
+    (tmp_path / 'plan.yaml').write_text(PLAN)
+    monkeypatch.setattr('builtins.input', at_its_end)
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(tmp_path / 'plan.yaml'), '--participant', '1',
+                                     '--output', str(tmp_path / 'study')])
+    assert main() == INTERRUPTED
+    assert 'nobody answers any more: the same command goes on where it was' in capsys.readouterr().err
+
+
 def test_consent_practice_teaching_and_questions_in_this_order(study, answers):
     folder, plan = study
     sessions = Sessions()

@@ -65,6 +65,9 @@ def run(args: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         print('stopped; the same command goes on where it was', file=sys.stderr)
         raise
+    except EOFError:
+        print('nobody answers any more: the same command goes on where it was', file=sys.stderr)
+        return 130
 
 
 def _run(args: argparse.Namespace) -> int:
