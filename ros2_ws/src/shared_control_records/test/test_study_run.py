@@ -107,6 +107,16 @@ def test_a_study_that_is_asked_to_leave_says_how_to_go_on(plan, tmp_path):
     wait_until(lambda: not processes(study.pid))
 
 
+@pytest.mark.parametrize('content', ['', '{}', '{"seconds": "long", "skilled": null}', '[]'])
+def test_a_damaged_result_is_named(plan, tmp_path, monkeypatch, capsys, content):
+    result = StudyFolder(tmp_path / 'study').run(load_plan(plan).jobs[0]) / 'result.json'
+    result.parent.mkdir(parents=True)
+    result.write_text(content)
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(tmp_path / 'study')])
+    assert main() == 2
+    assert f'remove {result} and run the study again' in capsys.readouterr().err
+
+
 def test_what_is_finished_before_the_disk_is_full_stays_usable(plan, tmp_path, monkeypatch, capfd):
     disk = tmp_path / 'disk'
     disk.mkdir()

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ConfigDict, TypeAdapter, with_config
+from pydantic import BaseModel, ConfigDict, TypeAdapter, with_config
 from shared_control.files import write_atomically
 from shared_control_learning.evaluation.result import TRACKS, ProtocolResult
 from shared_control_learning.wrong_content import what_is_wrong
@@ -73,6 +73,15 @@ class RunResult:
 _RUN_RESULT = TypeAdapter(RunResult)
 
 
+class Brief(BaseModel):
+    """What is told of a run as soon as it is done."""
+
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+    seconds: float
+    skilled: int | None
+
+
 def save_result(result: RunResult, folder: Path) -> None:
     """Keep a result. ``result.json`` comes last and as a whole: a run that has one is done."""
     arrays: dict[str, Any] = {f'{name}/{track}': getattr(test, track).astype(np.float32)
@@ -103,8 +112,24 @@ def load_result(folder: Path) -> RunResult | None:
     except FileNotFoundError:
         return None
     except Exception as error:  # a damaged zip or JSON file raises errors of many kinds
-        raise ResultError(f'the result in {folder} is damaged ({what_is_wrong(error)}): '
-                          f'remove {folder / RESULT} and run the study again') from error
+        raise _damaged(folder, error) from error
+
+
+def load_brief(folder: Path) -> Brief:
+    """The part of a result that is told, without reading the tracks of its tests.
+
+    Raises:
+        ResultError: there is none, or it is damaged.
+    """
+    try:
+        return Brief.model_validate_json((folder / RESULT).read_bytes())
+    except (OSError, ValueError) as error:
+        raise _damaged(folder, error) from error
+
+
+def _damaged(folder: Path, error: Exception) -> ResultError:
+    return ResultError(f'the result in {folder} is damaged ({what_is_wrong(error)}): '
+                       f'remove {folder / RESULT} and run the study again')
 
 
 def is_done(folder: Path) -> bool:

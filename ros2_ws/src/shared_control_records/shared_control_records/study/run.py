@@ -14,7 +14,6 @@
 
 """Doing what is left of a study's runs."""
 
-import json
 import sys
 from collections.abc import Generator, Sequence
 from contextlib import closing
@@ -27,7 +26,7 @@ from .folder import StudyError, StudyFolder
 from .plan import Job, Plan
 from .pool import Outcome, on_ray, on_this_machine
 from .progress import Progress
-from .result import RESULT, is_done
+from .result import is_done, load_brief
 
 DISK = ('No space left', 'Disk quota', 'Read-only file system')
 """Errors after which no other run can succeed either."""
@@ -43,6 +42,7 @@ def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = Non
         output: where it is printed what became of each run; standard output when not given.
 
     Raises:
+        ResultError: an earlier run's result is damaged; the message names it.
         StudyError: runs failed; the message says which and why. The others are done.
     """
     jobs = {job.name: job for job in plan.jobs if _possible(folder, plan, job)}
@@ -50,7 +50,7 @@ def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = Non
     time_left = TimeLeft()
     for job in jobs.values():
         if job.name not in left:
-            time_left.learn(job, _seconds(folder, job))
+            time_left.learn(job, load_brief(folder.run(job)).seconds)
     failed: list[Outcome] = []
     with closing(_outcomes(folder, list(left), workers, ray)) as ended, \
          tqdm(total=len(jobs), initial=len(jobs) - len(left), unit='run', disable=not sys.stderr.isatty(),
@@ -61,7 +61,7 @@ def do_runs(folder: StudyFolder, plan: Plan, workers: int, ray: str | None = Non
                 if outcome.error:
                     failed.append(outcome)
                 else:
-                    time_left.learn(job, _seconds(folder, job))
+                    time_left.learn(job, load_brief(folder.run(job)).seconds)
                 bar.update()
                 _tell(bar, f'{outcome.name}: {outcome.error or _summary(folder, job)}', output)
             bar.set_postfix_str(f'about {in_words(time_left.estimate(left.values(), workers))} left')
@@ -89,17 +89,9 @@ def _possible(folder: StudyFolder, plan: Plan, job: Job) -> bool:
     return not job.condition.taught or job.condition.name in progress.taught
 
 
-def _seconds(folder: StudyFolder, job: Job) -> float:
-    return float(_content(folder, job)['seconds'])
-
-
 def _summary(folder: StudyFolder, job: Job) -> str:
-    skilled = _content(folder, job)['skilled']
+    skilled = load_brief(folder.run(job)).skilled
     return f'skilled after {skilled} episodes' if skilled else 'not skilled'
-
-
-def _content(folder: StudyFolder, job: Job) -> dict:
-    return json.loads((folder.run(job) / RESULT).read_text(encoding='utf-8'))
 
 
 def _tell(bar: tqdm, text: str, output: TextIO | None) -> None:
