@@ -15,6 +15,7 @@
 """What is learned and how, by name: each is an entry point of the group ``shared_control.learners``."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +39,17 @@ class Preset(ABC):
     """A frozen dataclass of everything that can be set, kept with every policy."""
     taught: bool = True
     """Whether somebody is meant to be at the keys."""
+    needs: Callable[[str, Task], object] | None = None
+    """Raises ValueError, given the preset's name and a task, when it cannot learn that; quick. None: it learns any."""
+
+    def check(self) -> None:
+        """Find out, quickly, whether the task can be learned like this.
+
+        Raises:
+            ValueError: it cannot; the message says why.
+        """
+        if self.needs is not None:
+            self.needs(self.name, self.task)
 
     @abstractmethod
     def make(self, seed: int = 0) -> 'Learner':

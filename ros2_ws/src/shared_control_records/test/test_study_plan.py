@@ -15,6 +15,8 @@
 """Plans of studies: what they hold, and what is said of wrong ones."""
 
 import re
+import subprocess
+import sys
 from dataclasses import fields
 from pathlib import Path
 
@@ -71,6 +73,22 @@ def test_conditions_have_a_physics_to_train_and_to_be_tested_in(plan_file):
         load_plan(plan_file(PLAN.replace('episodes: 5', 'physics: flat')))
 
 
+def test_simulated_participants_teach_what_they_know(plan_file, monkeypatch):
+    monkeypatch.setattr('shared_control_records.study.plan_file.can_teach', lambda task: task.name != 'plate')
+    one = PLAN.replace('episodes: 5', 'task: plate')
+    with pytest.raises(PlanError, match=r'conditions\.coached: simulated tutors do not know .* the task plate'):
+        load_plan(plan_file(one))
+    load_plan(plan_file(one.replace('task: plate', 'task: plate, taught: false')))
+    load_plan(plan_file(REAL.replace('{coached: ,', '{coached: {task: plate},')))
+
+
+def test_a_plan_is_checked_without_loading_what_learns(plan_file):
+    path = plan_file(PLAN.replace('episodes: 5', 'preset: lqr, taught: false'))
+    subprocess.run([sys.executable, '-c', 'import sys; from pathlib import Path\n'
+                    'from shared_control_records.study.plan import load_plan\n'
+                    'load_plan(Path(sys.argv[1])); assert "torch" not in sys.modules', path], check=True)
+
+
 def test_simulated_participants_differ_around_their_profile():
     drawn = [draw_tutor('high', 0.15, seed) for seed in range(200)]
     for field in fields(drawn[0]):
@@ -116,6 +134,11 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     (PLAN, '[' * 100_000, 'plan.yaml'),
     (PLAN, f'a: {"b" * 2**20}', 'more than 1048576 bytes'),
     (PLAN, 'a: &a [1]\nb: [*a, *a]', 'line 2: aliases'),
+    ('episodes: 5', 'preset: lqr, task: plate', 'conditions.coached: lqr knows the task balance'),
+    ('episodes: 5', 'preset: pd, task: detour', 'conditions.coached: pd knows the task balance'),
+    ('episodes: 5', 'preset: identified_lqr, task: detour', 'conditions.coached: identified_lqr needs a task that'),
+    ('episodes: 5', 'sharing: axes', 'conditions.coached: axes are divided between person and robot only where'),
+    (PLAN, REAL.replace('{coached: ,', '{coached: {sharing: axes},'), 'conditions.coached: axes are divided'),
     (PLAN, REAL.replace('consent: You may stop at any time.', "consent: ' '"), 'participants.consent'),
     (PLAN, REAL.replace('You may stop at any time.', r'"\e[2J"'), 'consent: a text that a terminal shows'),
     (PLAN, REAL.replace('consent: You may stop at any time.', 'minutes: .nan'), 'participants.consent: is missing'),

@@ -28,6 +28,7 @@ from ..learner import check_tensors
 from ..noise import CorrelatedNoise
 from .linear import LinearLearner
 from .lqr import regulator
+from .needs import check_errors
 from .presets import IdentifiedLqrSettings
 
 
@@ -48,9 +49,7 @@ class IdentifiedLqr(LinearLearner):
 
     def __init__(self, name: str, task: Task, settings: IdentifiedLqrSettings, seed: int = 0):
         super().__init__(name, task, settings, seed)
-        if not task.errors or task.integrates:
-            raise ValueError(f'{name} needs a task that observes position errors and no integrals of them; '
-                             f'{task.name} is none')
+        check_errors(name, task)
         self._known = Transitions(task, settings.memory_episodes)
         self._noise = CorrelatedNoise(len(task.axes), settings.excitation_seconds)
 

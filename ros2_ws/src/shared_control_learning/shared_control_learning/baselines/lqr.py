@@ -26,7 +26,7 @@ from shared_control.tasks.task import Task
 from shared_control.teaching.tutor import BALL_ACCELERATION
 
 from .linear import LinearLearner
-from .pd import scales_of
+from .needs import scales_of
 from .presets import LqrSettings
 
 M_Y = BALANCE.axes[0]

@@ -14,10 +14,10 @@
 
 """A spring and a damper, by hand."""
 
-from shared_control.tasks.balance import Balance
 from shared_control.tasks.task import Task
 
 from .linear import LinearLearner
+from .needs import scales_of
 from .presets import PdSettings
 
 
@@ -36,14 +36,3 @@ class PdController(LinearLearner):
         self.weights[0, :2] = settings.stiffness * error, -settings.damping * velocity
         self.weights /= task.scale
         self.bias[0] = settings.level / float(task.scale[0])
-
-
-def scales_of(name: str, task: Task) -> tuple[float, float, float]:
-    """What position error, velocity and pitch of ``balance`` are divided by.
-
-    Raises:
-        ValueError: it is another task, or its observation has no fixed scales.
-    """
-    if not isinstance(task, Balance) or task.observation_scales is None:
-        raise ValueError(f'{name} knows the task balance, with its usual observation, not {task.name}')
-    return task.observation_scales

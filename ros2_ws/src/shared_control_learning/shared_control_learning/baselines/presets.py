@@ -17,15 +17,16 @@
 How each was tuned: docs/explanation/baselines.md.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import ConfigDict, Field
 from shared_control.tasks.balance import BALANCE
 
 from ..presets import Preset
 from ..settings import Fraction, Layers, NotNegative, Positive
+from .needs import check_errors, scales_of
 
 if TYPE_CHECKING:
     from ..learner import Learner
@@ -161,16 +162,12 @@ class PvpSettings(OffPolicySettings):
     """Standard deviation of the noise, in actions."""
 
 
-def _alone(name: str, learner: str, settings: Any) -> BaselinePreset:
-    return BaselinePreset(name, BALANCE, settings, taught=False, learner=learner)
-
-
-PD = _alone('pd', 'pd:PdController', PdSettings())
+PD = BaselinePreset('pd', BALANCE, PdSettings(), taught=False, learner='pd:PdController', needs=scales_of)
 """Gains by hand."""
-LQR = _alone('lqr', 'lqr:KnownLqr', LqrSettings())
+LQR = BaselinePreset('lqr', BALANCE, LqrSettings(), taught=False, learner='lqr:KnownLqr', needs=scales_of)
 """An LQR on the known model of arm, controller and ball."""
-IDENTIFIED_LQR = replace(
-    _alone('identified_lqr', 'identified_lqr:IdentifiedLqr', IdentifiedLqrSettings()), taught=True)
+IDENTIFIED_LQR = BaselinePreset(
+    'identified_lqr', BALANCE, IdentifiedLqrSettings(), learner='identified_lqr:IdentifiedLqr', needs=check_errors)
 """An LQR on the model that least squares find in the episodes so far, whoever gave the moments."""
 BEHAVIOUR_CLONING = BaselinePreset(
     'behaviour_cloning', BALANCE, CloningSettings(), learner='cloning:BehaviourCloning')

@@ -19,8 +19,10 @@ from typing import Annotated, Any, Literal, get_args
 
 import yaml
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, field_validator, model_validator
+from shared_control.control.sharing import Sharing
 from shared_control.plugins import WORLDS, names
 from shared_control.printable import shortened
+from shared_control.teaching.picture import can_teach
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.presets import preset, preset_for
 
@@ -108,6 +110,13 @@ class Learning(Section):
     sharing: Literal['additive', 'override', 'blend', 'axes'] = 'additive'
     """What counts of the two moments (:mod:`shared_control.control.sharing`)."""
 
+    @model_validator(mode='after')
+    def _can_be_learned(self) -> 'Learning':
+        chosen = preset_for(self.task, self.preset)
+        chosen.check()
+        Sharing(self.sharing).check(len(chosen.task.axes))
+        return self
+
 
 class Question(Section):
     """A question to a participant."""
@@ -178,6 +187,16 @@ class PlanFile(Section):
             return content
         return {name: {'preset': name, **(settings or {})} if isinstance(settings, dict | None) else settings
                 for name, settings in content.items()}
+
+    @model_validator(mode='after')
+    def _tutors_know_the_tasks(self) -> 'PlanFile':
+        if isinstance(self.participants, Simulated):
+            for name, learning in self.conditions.items():
+                task = preset_for(learning.task, learning.preset).task
+                if learning.taught and not can_teach(task):
+                    raise ValueError(f'conditions.{name}: simulated tutors do not know the axes of the task '
+                                     f'{task.name}: let real participants teach it, or set taught to false')
+        return self
 
 
 class _Loader(yaml.SafeLoader):
