@@ -185,6 +185,12 @@ def test_the_command_tests_a_policy(session, capsys):
     assert (session / 'out' / 'fig16_randomized_position_error.svg').exists()
 
 
+@pytest.mark.parametrize('seed', [-1, 2**31])
+def test_a_seed_that_is_none_is_named_before_a_policy_is_read(tmp_path, seed):
+    with pytest.raises(ValueError, match=rf'--seed is {seed}, expected 0 to 2147483647'):
+        evaluate(tmp_path / 'nothing', '--seed', seed)
+
+
 def test_the_command_decides_early(session, capsys):
     assert evaluate(session / 's', '--until-known', '--json', session / 'r.json') == 0
     assert 's: does not pass' in capsys.readouterr().out

@@ -23,6 +23,7 @@ from shared_control.files import refuse_unwritable
 from shared_control.plugins import TASKS, WORLDS, load, names
 
 TEST_EPISODES = 20
+SEED_MAX = 2**31 - 1
 
 DESCRIPTION = """Test policies that act alone, without exploring, in this process, each on its own task. The first
 three tests are those of the thesis:
@@ -66,6 +67,8 @@ def run(args: argparse.Namespace) -> int:
     """Test the policies; the exit code."""
     if args.test_episodes < 1:
         raise ValueError(f'--test-episodes is {args.test_episodes}; at least 1 is needed')
+    if args.seed is not None and not 0 <= args.seed <= SEED_MAX:
+        raise ValueError(f'--seed is {args.seed}, expected 0 to {SEED_MAX}')
     if args.until_known and (args.protocol != 'randomized' or args.test_episodes != TEST_EPISODES or args.output):
         raise ValueError('--until-known answers one question of the randomized test with 20 episodes: '
                          'leave out --protocol, --test-episodes and --output')
