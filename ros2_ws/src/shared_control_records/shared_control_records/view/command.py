@@ -45,9 +45,9 @@ def run(args: argparse.Namespace) -> int:
     from .recording import blueprint, log_bag
     if args.output is not None:
         refuse_another_file(args.output, 'recording of Rerun', b'RRF')
-    path = find_bag(args.session)
-    bag = read_bag(path)
-    recording = rr.RecordingStream('shared_control', recording_id=str(path.absolute()))
+    bag = read_bag(find_bag(args.session))
+    # The same session is the same recording, wherever it lies: recordings are passed on, and paths name a home.
+    recording = rr.RecordingStream('shared_control', recording_id=f'{bag.start_ns}-{bag.end_ns}')
     if args.output is None:
         recording.spawn(default_blueprint=blueprint(bag))
     else:
