@@ -90,6 +90,7 @@ def look() -> str:
     from rclpy.context import Context
     from rclpy.node import Node
     from shared_control_ros import contract
+    from shared_control_ros.interfaces import INTERFACES
     contexts = Context(), Context()
     for context in contexts:
         rclpy.init(context=context)
@@ -105,8 +106,11 @@ def look() -> str:
         time.sleep(0.05)
     alone = (contract.JOINT_STATES, contract.EFFORT_COMMANDS, contract.BALL, contract.CLOCK, contract.HUMAN_WRENCH,
              contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.PHASE)  # of which a graph has one publisher
-    there = {f'{info.node_namespace.rstrip("/")}/{info.node_name}'
-             for topic in alone for info in me.get_publishers_info_by_topic(topic.full_name)}
+    of_keys = {name for name, interface in INTERFACES.items() if contract.KEYS in interface.publishes}
+    publishers = [info for topic in alone for info in me.get_publishers_info_by_topic(topic.full_name)]
+    publishers += [info for info in me.get_publishers_info_by_topic(contract.KEYS.full_name)
+                   if info.node_name in of_keys]  # devices of the person's own may be there
+    there = {f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in publishers}
     for context in contexts:
         rclpy.try_shutdown(context=context)
     if there:

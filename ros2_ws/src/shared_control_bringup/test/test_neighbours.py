@@ -16,6 +16,7 @@
 
 import pytest
 from shared_control_bringup.neighbours import Neighbours
+from shared_control_ros import contract
 
 
 def look():
@@ -28,6 +29,15 @@ def test_a_simulator_that_somebody_has_left_behind_is_named(start_node, domain_i
     start_node('panda_sim_node').wait_for_log('ready')
     with pytest.raises(ValueError, match=f'/panda_sim_node already in ROS domain {domain_id}: .*ROS_DOMAIN_ID'):
         look()
+
+
+def test_a_tutor_that_somebody_has_left_behind_is_named_and_a_device_is_welcome(start_node, observer):
+    observer.node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
+    look()
+    start_node('sim_tutor_node').wait_for_log('ready')
+    with pytest.raises(ValueError, match='/sim_tutor_node already in ROS domain') as error:
+        look()
+    assert 'observer' not in str(error.value)
 
 
 @pytest.mark.parametrize(('name', 'value', 'said'), [
