@@ -120,7 +120,8 @@ def watched(domain_id, observer, tmp_path, monkeypatch):
     """A node that stands still when it is told to, what waits for it said, and what was reported of it."""
     monkeypatch.setattr(waits_module, 'STANDSTILL', 3.0)
     monkeypatch.setattr(waits_module, 'ENDED_AFTER', 6.0)
-    node = NodeProcess('sim_tutor_node', tmp_path / 'none.yaml', tmp_path / 'sim_tutor_node.log')
+    (tmp_path / 'log').mkdir()
+    node = NodeProcess('sim_tutor_node', tmp_path / 'none.yaml', tmp_path / 'log' / 'sim_tutor_node.log')
     freeze = tmp_path / 'freeze'
     node._command = [sys.executable, '-c', FREEZES, str(freeze)]
     said, reports = [], observer.listen(contract.DIAGNOSTICS)
@@ -160,12 +161,14 @@ def test_a_loop_that_somebody_has_stopped_is_said_and_reported_and_left_alone(wa
 
 
 def test_a_loop_that_stands_still_by_itself_writes_where_and_is_ended(watched):
-    node, said, until, _, freeze = watched
+    node, said, until, of, freeze = watched
     freeze.touch()
-    until(lambda: node.exit_code() is not None)
+    until(lambda: node.exit_code() is not None and of('/session'))
     assert node.exit_code() == -signal.SIGKILL
     assert 'in never_again' in node.log.read_text()
-    assert any('has stood still for' in line and str(node.log) in line for line in said)
+    assert any('has stood still for' in line and 'log/sim_tutor_node.log' in line for line in said)
+    assert 'log/sim_tutor_node.log' in of('/session')[0].message, 'recorded, hence without the path of the folder'
+    assert str(node.log) not in of('/session')[0].message
 
 
 def test_the_newest_warning_of_a_node_is_found_in_its_log(tmp_path):
