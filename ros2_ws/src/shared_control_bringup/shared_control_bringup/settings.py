@@ -17,10 +17,11 @@
 import json
 import math
 from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
 from typing import Any
 
 from shared_control.control.sharing import WAYS, Sharing
-from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
+from shared_control.plugins import LEARNERS, ROBOTS, TASKS, WORLDS, names
 from shared_control.teaching.feedback import FEEDBACK
 from shared_control.teaching.tutors import TUTOR_NAMES
 
@@ -113,11 +114,12 @@ class Settings:
         return f'{SIMULATED}{self.profile}' if self.tutor == 'sim' else self.tutor
 
     def resolved(self) -> 'Settings':
-        """These settings with task and preset by name."""
+        """These settings with task and preset by name, and a robot's file where it is found from anywhere."""
         from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
         chosen = preset_for(self.task, self.preset)
         Sharing(self.sharing).check(len(chosen.task.axes))
-        return replace(self, task=chosen.task.name, preset=chosen.name)
+        robot = self.robot if self.robot in ('', *names(ROBOTS)) else str(Path(self.robot).expanduser().absolute())
+        return replace(self, task=chosen.task.name, preset=chosen.name, robot=robot)
 
     def check_preset(self) -> None:
         """Whether the preset can learn the task, where the two were not made for each other.

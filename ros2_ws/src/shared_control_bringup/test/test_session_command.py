@@ -16,10 +16,13 @@
 
 import json
 import os
+import shutil
+from importlib.resources import files
 
 import pytest
 import yaml
 from shared_control.cli import main
+from shared_control.robot.spec_file import load_robot
 from shared_control_bringup import session as command
 from shared_control_bringup.interrupts import Interrupts
 from shared_control_bringup.parameters import DEFAULTS, load
@@ -210,6 +213,19 @@ def test_a_session_goes_on_with_its_parameters_and_the_options_given_now(session
     assert (kept['episodes'], kept['minutes'], kept['tutor'], kept['screen']) == (9, 3.0, 'simulated: low', False)
     assert kept['earlier_tutors'] == ['simulated: expert']
     assert folder.ros_parameters('ppo_agent_node')['max_minutes'] == 3.0
+
+
+def test_the_file_of_a_robot_is_found_from_wherever_a_session_goes_on(session, tmp_path, monkeypatch):
+    folder = SessionFolder(tmp_path / 'session')
+    shutil.copy(files('shared_control') / 'robot' / 'specs' / 'panda.yaml', tmp_path / 'arm.yaml')
+    monkeypatch.chdir(tmp_path)
+    session.end = End.STOPPED
+    assert session('--tutor', 'sim', '--robot', './arm.yaml', '--output', folder.path) == 130
+    (tmp_path / 'elsewhere').mkdir()
+    monkeypatch.chdir(tmp_path / 'elsewhere')
+    load_robot.cache_clear()
+    assert session('--resume', folder.path) == 130
+    assert folder.ros_parameters('panda_sim_node')['robot'] == str(tmp_path / 'arm.yaml')
 
 
 @pytest.mark.parametrize('arguments', [

@@ -263,12 +263,15 @@ def test_what_is_packed_into_a_bag_names_no_home_and_no_token(tmp_path):
     folder.parameters.write_text(yaml.safe_dump({'/**/teach_page_node': {'ros__parameters': {
         'token': 's3cret', 'output': str(folder.bag), 'robot': '/home/jane.doe/robots/ur5.yaml', 'rate': 50.0,
         'files': [str(folder.learner), '~jane.doe/a.yaml'], 'name': 'a/b'}}}))
+    folder.write_settings({'task': 'balance', 'robot': '/home/jane.doe/robots/ur5.yaml', 'earlier_tutors': []})
     packed = bag_metadata.pack(folder, restarts=0)
+    assert json.loads(packed['settings.json']) == {'task': 'balance', 'robot': 'ur5.yaml', 'earlier_tutors': []}
     assert yaml.safe_load(packed['parameters.yaml']) == {'/**/teach_page_node': {'ros__parameters': {
         'output': 'bag', 'robot': 'ur5.yaml', 'rate': 50.0, 'files': ['learner', 'a.yaml'], 'name': 'a/b'}}}
     assert 'jane.doe' not in str(packed) and 's3cret' not in str(packed)
     folder.parameters.write_text('{')
-    assert 'parameters.yaml' not in bag_metadata.pack(folder, restarts=0)
+    folder.settings.write_text('{')
+    assert not {'parameters.yaml', 'settings.json'} & bag_metadata.pack(folder, restarts=0).keys()
 
 
 def test_a_session_with_two_axes_is_reported_from_above(tmp_path, lessons, bag, monkeypatch):

@@ -19,6 +19,8 @@ A session puts it behind the messages as a metadata record of the MCAP file
 """
 
 import json
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -48,18 +50,17 @@ def pack(folder: SessionFolder, restarts: int) -> dict[str, str]:
     Bags are handed to others: no absolute path is in it, which would name a person's home, and no token.
     """
     packed = {_key(folder, path): path.read_text(encoding='utf-8') for path in _files(folder) if path.is_file()}
-    parameters = _key(folder, folder.parameters)
-    if parameters in packed:
-        try:
-            shared = _for_others(yaml.safe_load(packed.pop(parameters)), folder.path)
-            packed[parameters] = yaml.safe_dump(shared, sort_keys=False)
-        except yaml.YAMLError:
-            pass  # somebody has damaged it: what it says is not known
+    for path, read, write in ((folder.parameters, yaml.safe_load, partial(yaml.safe_dump, sort_keys=False)),
+                              (folder.settings, json.loads, partial(json.dumps, indent=2))):
+        text = packed.pop(_key(folder, path), None)
+        if text is not None:
+            with suppress(yaml.YAMLError, ValueError):  # somebody has damaged it: what it says is not known
+                packed[_key(folder, path)] = write(_for_others(read(text), folder.path))
     return {**packed, _key(folder, folder.summary): json.dumps({'restarts': restarts})}
 
 
 def _for_others(value: Any, folder: Path) -> Any:
-    """Parameters without secrets; a path within the session's folder relative to it, of others the last name alone."""
+    """Settings without secrets; a path within the session's folder relative to it, of others the last name alone."""
     if isinstance(value, dict):
         return {key: _for_others(content, folder) for key, content in value.items() if key not in SECRETS}
     if isinstance(value, list):
