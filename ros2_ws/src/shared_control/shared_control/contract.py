@@ -73,7 +73,7 @@ EFFORT_COMMANDS = Topic(
     'effort_controller/commands', 'std_msgs/msg/Float64MultiArray', 1000, 'controller', 'robot', '1 kHz',
     '7 torques, N m; `label`: stamp of the joint states that they answer, ns')
 ANSWER_DIGITS = 19
-"""How many digits that stamp has, zeros in front; enough until the year 2286."""
+"""How many digits that stamp has, zeros in front; enough until the year 2286. It is not negative."""
 KEYS = Topic(
     'human/keys', 'sensor_msgs/msg/Joy', 50, 'any source of keys', 'teleop', 'on event, 10 Hz or more',
     'buttons = left, right, space, up, down; axes of a stick = left, up')

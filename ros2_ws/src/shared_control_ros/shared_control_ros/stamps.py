@@ -22,6 +22,17 @@ def to_ns(stamp: Time) -> int:
     return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
+def robot_time(stamp_ns: int) -> int:
+    """A stamp of a robot, ns, that may be counted with and named in the label of an answer.
+
+    Raises:
+        ValueError: no robot's clock can have shown it.
+    """
+    if stamp_ns < 0:
+        raise ValueError(f"its stamp is {stamp_ns * 1e-9:.3f} s: no robot's time is negative")
+    return stamp_ns
+
+
 def set_ns(stamp: Time, ns: int) -> None:
     """Write ``ns`` into a stamp, in place."""
     stamp.sec, stamp.nanosec = divmod(ns, 1_000_000_000)

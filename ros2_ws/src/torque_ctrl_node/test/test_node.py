@@ -195,6 +195,18 @@ class TestRunningController:
         assert len(robot.commands) == answers
         robot.tick()
 
+    @pytest.mark.parametrize('stamp_ns', [-1_000_000, -2**31 * 10**9])
+    def test_joint_states_of_a_time_that_no_robot_has_get_no_answer(self, node, robot, stamp_ns):
+        time.sleep(1.0)  # an error is said once a second
+        robot.tick()
+        answers, now_ns = len(robot.commands), robot.now_ns
+        robot.now_ns = stamp_ns
+        robot.states.publish(robot.state())
+        node.wait_for_log(f"/joint_states: its stamp is {stamp_ns * 1e-9:.3f} s: no robot's time is negative")
+        robot.now_ns = now_ns
+        robot.tick()
+        assert len(robot.commands) == answers + 1
+
     def test_an_answer_says_what_it_answers_and_a_repeated_tick_gets_the_same(self, robot):
         robot.tick()
         robot.states.publish(robot.state())

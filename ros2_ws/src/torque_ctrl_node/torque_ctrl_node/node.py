@@ -39,6 +39,7 @@ from shared_control_ros.real_time import keep_loop_on_time
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
 from shared_control_ros.serialized import stamp_of
+from shared_control_ros.stamps import robot_time
 from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.torque_command import TorqueBytes
 from shared_control_ros.watchdog import Watchdog
@@ -143,11 +144,12 @@ class TorqueCtrlNode:
     def _hear(self, message: bytes, stop: Stop) -> None:
         try:
             state = self._reader.read(message)
+            now_ns = robot_time(stamp_of(message))
         except ValueError as error:
             self.node.get_logger().error(
                 f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
             return
-        self._now_ns = now_ns = stamp_of(message)
+        self._now_ns = now_ns
         if not self._safety.enabled:
             self._stand_by(now_ns, *state)
         if self._safety.enabled:
