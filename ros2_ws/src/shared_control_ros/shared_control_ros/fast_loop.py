@@ -23,6 +23,7 @@ the urgent one with :meth:`Polled.wait`, and lets :class:`Background` serve the 
 then.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
@@ -30,9 +31,12 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.subscription import Subscription
+from rosgraph_msgs.msg import Clock
 
 from . import contract
 from .contract import Topic, qos
+from .stamps import robot_time, to_ns
 
 
 class _NotForTheExecutor(CallbackGroup):
@@ -100,17 +104,39 @@ class Polled:
         return self.take()
 
 
+def _clocks(node: Node) -> list[Subscription]:
+    """The subscriptions by which rclpy sets the clock of a node with ``use_sim_time``."""
+    return [subscription for subscription in node.subscriptions
+            if subscription.topic_name == contract.CLOCK.full_name
+            and not isinstance(subscription.callback_group, _NotForTheExecutor)]
+
+
+def _refuse_impossible_times(node: Node) -> None:
+    """Drop what /clock cannot have shown: rclpy raises an error at a negative time, which would end the node."""
+    for subscription in _clocks(node):
+        set_clock = subscription.callback
+
+        def heed(message: Clock, set_clock: Callable[[Clock], None] = set_clock) -> None:
+            try:
+                robot_time(to_ns(message.clock))
+            except ValueError as error:
+                node.get_logger().error(
+                    f'dropped a message on {contract.CLOCK.full_name}: {error}', throttle_duration_sec=1.0)
+            else:
+                set_clock(message)
+
+        subscription.callback = heed
+
+
 def follow_clock(node: Node) -> None:
     """Set the clock of a node with ``use_sim_time`` to the newest ``/clock``, before it stamps a message.
 
     rclpy takes /clock in the executor, which such a node serves seldom: its clock would lag by seconds, or stay at 0.
     """
-    for subscription in node.subscriptions:
-        if subscription.topic_name == contract.CLOCK.full_name and not isinstance(
-                subscription.callback_group, _NotForTheExecutor):
-            taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-            if taken is not None:
-                subscription.callback(taken[0])
+    for subscription in _clocks(node):
+        taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
+        if taken is not None:
+            subscription.callback(taken[0])
 
 
 class Background:
@@ -118,6 +144,7 @@ class Background:
 
     def __init__(self, node: Node):
         self._node = node
+        _refuse_impossible_times(node)
         self._executor = SingleThreadedExecutor(context=node.context)
         self._executor.add_node(node)
         self._wait_set: Any = None

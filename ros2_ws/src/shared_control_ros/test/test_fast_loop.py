@@ -19,8 +19,11 @@ import sys
 import time
 
 from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
 from shared_control_ros import contract
-from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.fast_loop import Background, Polled, follow_clock
+from shared_control_ros.stamps import set_ns
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import Trigger
 
@@ -68,6 +71,34 @@ def test_background_serves_when_polled(observer):
     assert future.result().success
     background.close()
     server.destroy_node()
+
+
+def test_a_negative_clock_is_dropped_and_named(observer, capfd):
+    node = Node('follower', context=observer.context, parameter_overrides=[Parameter('use_sim_time', value=True)])
+    background = Background(node)
+    publisher, message = observer.publisher(contract.CLOCK), Clock()
+    observer.spin(publisher.get_subscription_count)
+
+    def heard(serve):
+        """Whether the clock has gone on by a second, after a time that it cannot have shown."""
+        until = node.get_clock().now().nanoseconds + 10**9
+        said = ''
+        for _ in range(100):
+            for now_ns in (-10**9, until):
+                set_ns(message.clock, now_ns)
+                publisher.publish(message)
+                time.sleep(0.02)
+                serve()
+            said += capfd.readouterr().err
+            if node.get_clock().now().nanoseconds == until and "/clock: its stamp is -1.000 s" in said:
+                return True
+        return False
+
+    assert heard(lambda: background.spin_once(0.1)), 'by the executor'
+    time.sleep(1.0)  # an error is said once a second
+    assert heard(lambda: follow_clock(node)), 'by hand'
+    background.close()
+    node.destroy_node()
 
 
 def test_a_loop_is_not_collected_from_and_has_timers_that_are_on_time():

@@ -22,7 +22,7 @@ from rclpy.node import Node
 from rclpy.time import Time
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
-from shared_control_ros.stamps import to_ns
+from shared_control_ros.stamps import robot_time, to_ns
 
 
 class Ticker:
@@ -39,6 +39,7 @@ class Ticker:
     def __init__(self, node: Node, period: float):
         self._period = period
         self._period_ns = round(period * 1e9)
+        self._log = node.get_logger()
         self._ros_clock = cast(ROSClock, node.get_clock())
         self.clock = Polled(node, contract.CLOCK) if node.get_parameter('use_sim_time').value else None
         """Where the time comes from; None: from this machine."""
@@ -55,7 +56,12 @@ class Ticker:
             message = self.clock.wait(left)
             if message is None:
                 continue
-            before, self._now_ns = self._now_ns, to_ns(message.clock)
+            try:
+                now_ns = robot_time(to_ns(message.clock))
+            except ValueError as error:
+                self._log.error(f'dropped a message on {self.clock.topic_name}: {error}', throttle_duration_sec=1.0)
+                continue
+            before, self._now_ns = self._now_ns, now_ns
             self._ros_clock.set_ros_time_override(Time.from_msg(message.clock))
             if before // self._period_ns != self._now_ns // self._period_ns:
                 break
