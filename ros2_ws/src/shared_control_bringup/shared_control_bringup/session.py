@@ -122,9 +122,7 @@ def _new_settings(args: argparse.Namespace) -> Settings:
     given = given_settings(args)
     if given.get('tutor') == 'sim':
         given.setdefault('episodes', EPISODES_OF_SIMULATED)
-    settings = Settings().with_options(given).resolved()
-    settings.check_preset()
-    return settings
+    return Settings().with_options(given).resolved()
 
 
 def _resumed_settings(args: argparse.Namespace, folder: SessionFolder) -> Settings:
@@ -176,12 +174,8 @@ def _earlier_restarts(folder: SessionFolder) -> int:
         ValueError: the summary says something else.
         OSError: it cannot be read.
     """
-    restarts = (folder.read_json(folder.summary) or {}).get('restarts')
-    if restarts is None:
-        return 0
-    if type(restarts) is not int or restarts < 0:
-        raise ValueError(f'cannot use {folder.summary}: restarts is {restarts!r}, expected a whole number')
-    return restarts
+    from shared_control_records.session.summary import earlier_restarts  # late: it reads bags, which takes a second
+    return earlier_restarts(folder) or 0
 
 
 def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, interrupts: Interrupts) -> End:

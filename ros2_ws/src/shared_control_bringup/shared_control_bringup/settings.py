@@ -114,27 +114,17 @@ class Settings:
         return f'{SIMULATED}{self.profile}' if self.tutor == 'sim' else self.tutor
 
     def resolved(self) -> 'Settings':
-        """These settings with task and preset by name, and a robot's file where it is found from anywhere."""
+        """These settings with task and preset by name, and a robot's file where it is found from anywhere.
+
+        Raises:
+            ValueError: the preset cannot learn the task, or its moments cannot be shared like this.
+        """
         from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
         chosen = preset_for(self.task, self.preset)
+        chosen.check()
         Sharing(self.sharing).check(len(chosen.task.axes))
         robot = self.robot if self.robot in ('', *names(ROBOTS)) else str(Path(self.robot).expanduser().absolute())
         return replace(self, task=chosen.task.name, preset=chosen.name, robot=robot)
-
-    def check_preset(self) -> None:
-        """Whether the preset can learn the task, where the two were not made for each other.
-
-        Raises:
-            ValueError: it cannot.
-        """
-        from shared_control_learning.presets import preset_for  # late, as above
-        chosen = preset_for(self.task, self.preset)
-        if chosen.name == preset_for(self.task).name or chosen.task.name == preset_for('', self.preset).task.name:
-            return  # torch takes seconds to import
-        try:
-            chosen.make(self.seed)
-        except ValueError as error:
-            raise ValueError(f'the preset {chosen.name} cannot learn the task {chosen.task.name}: {error}') from error
 
     def with_options(self, given: dict[str, Any]) -> 'Settings':
         """These settings with the options that were given, some of which mean nothing without another.
