@@ -197,7 +197,7 @@ class PandaSimNode:
     def _advance_free(self, stop: Stop) -> None:
         self._pace()
         started = time.perf_counter()
-        torque = self._commands.take_torque()
+        torque = self._commands.take_torque(self._stamp_ns)
         if torque is None:
             self._missed += 1
             self._command_age += 1

@@ -249,6 +249,28 @@ def test_free_running_keeps_torques_within_the_joints_limits(start_node, observe
     observer.spin(lambda: any(list(m.effort) == [87.0] * 4 + [12.0] * 3 for m in states))
 
 
+@pytest.mark.parametrize(('robot', 'parameters'), [
+    ('panda_sim_node', {'mode': 'free_running'}), ('mock_panda_node', {'drop_rate': 0.0})])
+def test_a_robot_that_runs_freely_takes_no_answers_to_joint_states_of_another(
+        start_node, observer, robot, parameters):
+    states, commands = observer.listen(contract.JOINT_STATES), observer.publisher(contract.EFFORT_COMMANDS)
+    start_node(robot, **parameters)
+    observer.spin(lambda: states and commands.get_subscription_count() == 1)
+
+    def last_joint(torque, late_ns):
+        """Whether the torque about the last joint has become this."""
+        effort = list(states[-1].effort)
+        commands.publish(torque_command([*effort[:6], torque], to_ns(states[-1].header.stamp) - late_ns))
+        return any(message.effort[6] == torque for message in states)
+
+    observer.spin(lambda: last_joint(0.125, 0), what='an answer')
+    for late_ns in (-60 * 10**9, 60 * 10**9):
+        for _ in range(50):
+            assert not last_joint(0.25, late_ns)
+            observer.spin_for(0.01)
+    observer.spin(lambda: last_joint(0.375, 3_000_000), what='an answer that is some ticks late')
+
+
 def test_free_running_is_controlled(start_node, observer):
     states, commands = observer.listen(contract.JOINT_STATES), observer.listen(contract.EFFORT_COMMANDS)
     start_node('panda_sim_node', mode='free_running')

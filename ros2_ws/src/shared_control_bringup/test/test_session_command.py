@@ -305,7 +305,7 @@ def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):
     ('settings.json', '{"episodes": "many"}', "settings.json: episodes: Input should be a valid integer, found 'many'"),
     ('settings.json', '{"test_episodes": 2.5}', 'settings.json: test_episodes: Input should be a valid integer'),
     ('test.json', '{"episodes": [', 'test.json is no result of a test'),
-    ('summary.json', '{"restarts": "2"}', "summary.json: restarts: "),
+    ('summary.json', '{"restarts": "2"}', 'summary.json: restarts: '),
     ('summary.json', '{"restarts": 2', 'summary.json: '),
     ('given_parameters.yaml', None, 'given_parameters.yaml')])
 def test_a_session_whose_files_are_damaged_does_not_go_on(session, tmp_path, capsys, name, text, said):

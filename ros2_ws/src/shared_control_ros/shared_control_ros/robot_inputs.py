@@ -27,6 +27,9 @@ from .fast_loop import Polled
 from .torque_command import command_layout
 from .wire import read_message
 
+ANSWER_LATE_NS = 1_000_000_000
+"""A robot that runs freely gets its answers some ticks late; those to older joint states than this are not for it."""
+
 
 class TorqueInput(Polled):
     """Joint torques on /effort_controller/commands; unusable ones are refused with an error."""
@@ -36,11 +39,16 @@ class TorqueInput(Polled):
         super().__init__(node, contract.EFFORT_COMMANDS, raw=True)
         self._layout = command_layout(dof)
 
-    def read(self, data: bytes, stamp_ns: int | None = None) -> np.ndarray | None:
+    def read(self, data: bytes, stamp_ns: int | None = None, late_ns: int = 0) -> np.ndarray | None:
         """Torques of a serialized command, (n,), N m.
 
-        Returns: None when it is unusable, or when it answers joint states of another stamp than ``stamp_ns``. One that
-            does not say what it answers will do for any.
+        Args:
+            data: the command.
+            stamp_ns: of the joint states that are to be answered; None: of any.
+            late_ns: the answer may be to joint states so much older than that.
+
+        Returns: None when it is unusable, or the answer to other joint states. One that does not say what it answers
+            will do for any.
         """
         try:
             torque, label = self._parts(data)
@@ -51,8 +59,9 @@ class TorqueInput(Polled):
             self._refuse(f'expected {self._dof} finite torques, got {torque[:10].tolist()}')
             return None
         says_stamp = len(label) == ANSWER_DIGITS and label.isdigit()
-        is_another = stamp_ns is not None and says_stamp and label != answer_label(stamp_ns).encode()
-        return None if is_another else torque
+        if stamp_ns is not None and says_stamp and not stamp_ns - late_ns <= int(label) <= stamp_ns:
+            return None
+        return torque
 
     def _parts(self, data: bytes) -> tuple[np.ndarray, bytes]:
         """The torques, whatever they are, and what the dimension is called.
@@ -74,10 +83,13 @@ class TorqueInput(Polled):
         self._node.get_logger().error(
             f'dropped a message on {self.topic_name}: {fault}', throttle_duration_sec=1.0)
 
-    def take_torque(self) -> np.ndarray | None:
-        """The newest usable torques that wait, (n,), N m."""
+    def take_torque(self, stamp_ns: int) -> np.ndarray | None:
+        """The torques that wait for a robot that runs freely, (n,), N m, if they are of use to it.
+
+        ``stamp_ns``: of its newest joint states.
+        """
         message = self.take()
-        return None if message is None else self.read(message)
+        return None if message is None else self.read(message, stamp_ns, ANSWER_LATE_NS)
 
 
 class PushInput:

@@ -117,12 +117,16 @@ class MockPandaNode:
             mode = self._robot.mode
             self._robot.tick(self._take_command())
             self._tick += 1
-            self._states.publish(self._tick, self._start_ns + self._tick * PERIOD_NS, self._robot.torque)
+            self._states.publish(self._tick, self._stamp_ns, self._robot.torque)
             self._diagnostics.tick()
             if self._robot.mode is not mode:
                 self._on_mode()
             if self._diagnostics.due():
                 self._report()
+
+    @property
+    def _stamp_ns(self) -> int:
+        return self._start_ns + self._tick * PERIOD_NS
 
     def _wait_for_tick(self) -> None:
         self._due += self._period
@@ -140,7 +144,7 @@ class MockPandaNode:
             time.sleep(wait)
 
     def _take_command(self) -> np.ndarray | None:
-        torque = self._commands.take_torque()
+        torque = self._commands.take_torque(self._stamp_ns)
         if not self._enabled:
             return None
         if torque is not None and self._random.random() < self._drop_rate:

@@ -113,7 +113,7 @@ class PandaBridgeNode:
             self._background.poll()
 
     def _hear(self) -> None:
-        torque = self._commands.take_torque()
+        torque = self._commands.take_torque(self._stamp_ns())
         if torque is None:
             return
         self._command, self._command_time = torque, time.monotonic()
