@@ -90,7 +90,7 @@ def test_a_negative_clock_is_dropped_and_named(observer, capfd):
                 time.sleep(0.02)
                 serve()
             said += capfd.readouterr().err
-            if node.get_clock().now().nanoseconds == until and "/clock: its stamp is -1.000 s" in said:
+            if node.get_clock().now().nanoseconds == until and '/clock: its stamp is -1.000 s' in said:
                 return True
         return False
 
