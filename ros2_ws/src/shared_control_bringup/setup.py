@@ -18,7 +18,7 @@ setup(
     install_requires=[
         'shared_control', 'shared_control_sim', 'shared_control_learning', 'shared_control_records',
         'shared_control_ros', 'panda_sim_node', 'torque_ctrl_node', 'teleop_key_node', 'ppo_agent_node',
-        'shared_control_nodes', 'teach_page_node', 'panda_tray_description', 'rclpy', 'rosbags', 'pyyaml',
+        'shared_control_nodes', 'teach_page_node', 'panda_tray_description', 'pydantic', 'rclpy', 'rosbags', 'pyyaml',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
