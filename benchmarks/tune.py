@@ -178,16 +178,18 @@ def search(name: str, pool: ProcessPoolExecutor, output: Path, table: bool) -> N
         wanted = [(n, tutor, seed) for seed in range(FIRST_SEED, FIRST_SEED + rung.seeds) for tutor in subject.tutors
                   for n in left]
         folders = {key: output / name / f'{key[0]:02}' / f'{key[1] or "nobody"}-{key[2]}' for key in wanted}
-        if table:
-            wanted = [key for key in wanted if (folders[key] / f'{rung.episodes}.json').exists()]
+        done = [key for key in wanted if (folders[key] / f'{rung.episodes}.json').exists()]
+        is_whole = not table or len(done) == len(wanted)
+        wanted = done if table else wanted
         futures = [pool.submit(run, candidates[n], tutor, seed, rung.episodes, subject.tested_every,
                                folders[n, tutor, seed]) for n, tutor, seed in wanted]
         results: dict[int, list[dict[str, Any]]] = {}
         for (n, *_), future in zip(wanted, tqdm(futures, unit='run', disable=None), strict=True):
             results.setdefault(n, []).append(future.result())
-        if not results:
-            return
         tell(rung, results, candidates)
+        if not is_whole:
+            print('  more is left to do')
+            return
         left = sorted(results, key=lambda n: order(results[n]))
     print(f'best: {left[0]}, {candidates[left[0]].sharing}, {asdict(candidates[left[0]].preset.settings)}')
 
