@@ -103,6 +103,6 @@ class TestTheGraphOfAnotherRobot:
         joy.header.frame_id = 'test'
         observer.spin(lambda: held() is not None and states and keys.get_subscription_count())
         joy.buttons = [1, 0, 0]
-        observer.spin(held, 40.0, 'the moment of the key')
+        observer.spin(held, 120.0, 'the moment of the key')
         assert list(states[-1].name) == list(ur5.joints) and used[-1].header.frame_id == 'base_link'
         assert np.abs(np.array(states[-1].position) - ur5.home).max() < 0.1, 'the controller holds the arm'

@@ -15,7 +15,8 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
     """Real keys in a real pty, M_yh on the topic, the tray tilts and the ball rolls, and the person says when."""
     folder = tmp_path / 'session'
     content = parameters.load(unpaced)
-    content['ppo_agent_node']['episode_seconds'] = 600.0  # all keys are pressed within the first episode, however late
+    content['panda_sim_node']['paced'] = True  # all keys are to be pressed within the first episode
+    content['ppo_agent_node']['episode_seconds'] = 20.0
     parameters.save(content, unpaced)
     session = start_session('--tutor', 'keyboard', '--test-episodes', 1, '--params-file', unpaced,
                             '--output', folder, terminal=True)

@@ -65,7 +65,7 @@ def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_p
     waits = Waits([], print)  # of a session
     waits.open()
     node = observer.node
-    observer.spin(lambda: {'session', *NODES} <= set(node.get_node_names()), 30.0)
+    observer.spin(lambda: {'session', *NODES} <= set(node.get_node_names()), 120.0)
     observer.spin_for(1.0)  # the endpoints are told after the names
     for name, rules in allowed.items():
         if name == 'operator':
