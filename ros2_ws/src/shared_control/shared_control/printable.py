@@ -19,6 +19,8 @@ from typing import Any
 
 ECHO_MAX = 100
 """Characters of content that are repeated."""
+REASON_MAX = 500
+"""Characters of a reason."""
 _repr = reprlib.Repr()
 _repr.maxlevel, _repr.maxstring, _repr.maxother = 3, ECHO_MAX, ECHO_MAX
 

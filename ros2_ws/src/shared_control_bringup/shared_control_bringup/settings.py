@@ -121,8 +121,7 @@ class Settings:
         """
         from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
         chosen = preset_for(self.task, self.preset)
-        chosen.check()
-        Sharing(self.sharing).check(len(chosen.task.axes))
+        chosen.check(Sharing(self.sharing))
         robot = self.robot if self.robot in ('', *names(ROBOTS)) else str(Path(self.robot).expanduser().absolute())
         return replace(self, task=chosen.task.name, preset=chosen.name, robot=robot)
 

@@ -19,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from shared_control.control.sharing import ADDITIVE, Sharing
 from shared_control.plugins import LEARNERS, TASKS, load
 from shared_control.tasks.balance import BALANCE, THESIS
 from shared_control.tasks.task import Task
@@ -42,14 +43,15 @@ class Preset(ABC):
     needs: Callable[[str, Task], object] | None = None
     """Raises ValueError, given the preset's name and a task, when it cannot learn that; quick. None: it learns any."""
 
-    def check(self) -> None:
-        """Find out, quickly, whether the task can be learned like this.
+    def check(self, sharing: Sharing = ADDITIVE) -> None:
+        """Find out, quickly, whether the task can be learned like this, with moments that are shared like that.
 
         Raises:
             ValueError: it cannot; the message says why.
         """
         if self.needs is not None:
             self.needs(self.name, self.task)
+        sharing.check(len(self.task.axes))
 
     @abstractmethod
     def make(self, seed: int = 0) -> 'Learner':

@@ -18,9 +18,10 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from pydantic import ConfigDict, Field
+from shared_control.tasks.settings_check import LARGEST, SMALLEST
 
-Positive = Annotated[float, Field(ge=1e-9, le=1e6)]
-NotNegative = Annotated[float, Field(ge=0, le=1e6)]
+Positive = Annotated[float, Field(ge=SMALLEST, le=LARGEST)]
+NotNegative = Annotated[float, Field(ge=0, le=LARGEST)]
 Fraction = Annotated[float, Field(ge=0, le=1)]
 Layers = Annotated[tuple[Annotated[int, Field(ge=1, le=1024)], ...], Field(max_length=4)]
 Delay = Annotated[float, Field(ge=0, le=5)]

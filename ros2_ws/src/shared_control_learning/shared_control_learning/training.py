@@ -161,7 +161,7 @@ def new_learner(preset: Preset, tutor: Who | None, seed: int, physics: str = 'bu
         ValueError: it cannot be done: the preset does not learn such a task, it cannot be shared like this, there is no
             such physics, or there is a tutor and the task has other axes than tutors know.
     """
-    sharing.check(len(preset.task.axes))
+    preset.check(sharing)
     if tutor is not None and not can_teach(preset.task):
         raise ValueError(f'simulated tutors do not know the axes of the task {preset.task.name}: train without one')
     load(WORLDS, physics)

@@ -18,11 +18,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from pydantic import ValidationError
-from shared_control.printable import cut, escaped, shortened
+from shared_control.printable import REASON_MAX, cut, escaped, shortened
 
 PROBLEMS_MAX = 3
-REASON_MAX = 500
-"""Characters of a reason."""
 _WORDS = {
     'missing': 'is missing', 'unexpected_keyword_argument': 'is not known', 'extra_forbidden': 'is not known',
     'model_type': 'should be keys with values', 'dataclass_type': 'should be keys with values'}

@@ -25,7 +25,7 @@ import numpy as np
 import yaml
 
 from ..plugins import ROBOTS, load
-from ..printable import ECHO_MAX, cut, escaped, shortened
+from ..printable import ECHO_MAX, REASON_MAX, cut, escaped, shortened
 from .spec import Gains, RobotSpec
 
 _VECTORS = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'torque_max', 'home')
@@ -38,8 +38,6 @@ SIZE_MAX = 2**20
 """Bytes; a robot takes less than two thousand."""
 LARGEST = 1e6
 """The bound of all numbers: angles, rates, torques, gains."""
-_REASON_MAX = 500
-"""Characters."""
 
 
 class RobotFileError(ValueError):
@@ -76,7 +74,7 @@ def _read(path: Path, name: str) -> RobotSpec:
             raise ValueError(f'more than {SIZE_MAX} bytes are no robot')
         content = yaml.load(text.decode(), _Loader)
     except (OSError, ValueError, yaml.YAMLError, RecursionError) as error:
-        raise RobotFileError(escaped(f'cannot read the robot file {path}: {cut(str(error), _REASON_MAX)}')) from error
+        raise RobotFileError(escaped(f'cannot read the robot file {path}: {cut(str(error), REASON_MAX)}')) from error
     return _File(path, content).spec(name)
 
 
@@ -103,7 +101,7 @@ class _File:
         self._content = content
 
     def _error(self, key: object, what: str) -> RobotFileError:
-        return RobotFileError(escaped(f'{self._path}: {cut(str(key), ECHO_MAX)}: {cut(what, _REASON_MAX)}'))
+        return RobotFileError(escaped(f'{self._path}: {cut(str(key), ECHO_MAX)}: {cut(what, REASON_MAX)}'))
 
     def spec(self, name: str) -> RobotSpec:
         """The whole file, checked."""

@@ -112,9 +112,7 @@ class Learning(Section):
 
     @model_validator(mode='after')
     def _can_be_learned(self) -> 'Learning':
-        chosen = preset_for(self.task, self.preset)
-        chosen.check()
-        Sharing(self.sharing).check(len(chosen.task.axes))
+        preset_for(self.task, self.preset).check(Sharing(self.sharing))
         return self
 
 
