@@ -211,6 +211,10 @@ class Visitor:
         request = urllib.request.Request(self._address, headers=headers)
         return urllib.request.urlopen(request, timeout=60).read().decode()
 
+    def post(self, body, **headers):
+        request = urllib.request.Request(self._address, body, headers)
+        return urllib.request.urlopen(request, timeout=60).read().decode()
+
     def send(self, **fields):
         """Fill in the form that is shown; what comes then."""
         return self.send_in_order(*fields.items())
@@ -218,8 +222,7 @@ class Visitor:
     def send_in_order(self, *fields):
         """The same, field by field, the form's own first: a browser sends as many of a name as there are."""
         key = self.get().partition('name="key" value="')[2].partition('"')[0]
-        return urllib.request.urlopen(
-            self._address, urllib.parse.urlencode([('key', key), *fields]).encode(), timeout=60).read().decode()
+        return self.post(urllib.parse.urlencode([('key', key), *fields]).encode())
 
     def fields(self):
         """The names of the fields for text that are shown, in their order."""
@@ -258,6 +261,14 @@ def test_a_page_asks_for_consent_and_shows_no_markup_of_the_text(asked):
     assert 'I do not agree' in visitor.send(choice='perhaps'), 'what is no answer is asked again'
     assert 'Thank you' in visitor.send(choice='no')
     assert answer() is False
+
+
+@pytest.mark.parametrize('length', ['many', '-1', '1.5'])
+def test_an_answer_of_no_length_is_none(asked, length):
+    visitor, answer = asked('ready', 'Sit down.')
+    assert 'name="choice"' in visitor.post(b'choice=go_on', **{'Content-Length': length})
+    visitor.send(choice='go_on')
+    answer()
 
 
 def test_a_page_asks_for_the_workload(asked):
@@ -301,11 +312,13 @@ def test_the_last_page_ends_by_itself_once_it_is_shown(asked):
     answer()
 
 
-def test_other_pages_may_not_speak_to_the_form(asked):
-    visitor, answer = asked('ready', 'Rest')
-    for headers in ({'Host': 'evil.example'}, {'Origin': 'http://evil.example'}):
-        with pytest.raises(urllib.error.HTTPError, match='403'):
-            visitor.get(**headers)
+@pytest.mark.parametrize('header', [
+    {'Host': 'evil.example'}, {'Host': '['}, {'Host': ''}, {'Origin': 'http://evil.example'}, {'Origin': 'http://['}])
+def test_other_pages_may_not_speak_to_the_form(asked, header):
+    visitor, answer = asked('ready', 'Sit down.')
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        visitor.get(**header)
+    assert refused.value.code == 403
     visitor.send(choice='go_on')
     answer()
 

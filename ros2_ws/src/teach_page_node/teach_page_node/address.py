@@ -22,9 +22,9 @@ import secrets
 import socket
 
 from shared_control.files import state_folder
+from shared_control.loopback import LOOPBACK
 from shared_control.processes import starter
 
-LOOPBACK = ('127.0.0.1', 'localhost', '::1')
 TOKEN_VARIABLE = 'SHARED_CONTROL_PAGE_TOKEN'
 """Environment variable with the token, for who starts the node and tells the address: parameters are recorded."""
 

@@ -21,13 +21,12 @@ at, and who opens the server to the network needs a token.
 
 import hashlib
 import secrets
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
 
+from shared_control.loopback import is_loopback
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
-
-from .address import LOOPBACK
 
 
 class Guard:
@@ -60,10 +59,10 @@ class Guard:
     def _refusal(self, scope: Scope) -> str | None:
         headers = Headers(scope=scope)
         host = headers.get('host', '')
-        if self._token is None and urlsplit(f'//{host}').hostname not in LOOPBACK:
+        if self._token is None and not is_loopback(host):
             return f'this page is served to this machine only, not as {host!r}'
         origin = headers.get('origin')
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and origin.partition('://')[2] != host:
             return f'pages of {origin!r} may not speak to this one'
         if self._token is not None and not any(
                 secrets.compare_digest(given.encode(), self._token.encode()) for given in self._given(scope, headers)):

@@ -49,12 +49,12 @@ def test_this_machine_is_let_in(visit, host):
         assert socket.receive_text() == 'a picture'
 
 
-@pytest.mark.parametrize('host', ['evil.example', '127.0.0.1.evil.example:8088', ''])
+@pytest.mark.parametrize('host', ['evil.example', '127.0.0.1.evil.example:8088', '', '[', '[::1', ']'])
 def test_another_name_for_this_machine_is_refused(visit, host):
     assert visit().get('/', headers={'host': host}).status_code == 403
 
 
-@pytest.mark.parametrize('origin', ['http://evil.example', 'http://127.0.0.1:9000', 'null'])
+@pytest.mark.parametrize('origin', ['http://evil.example', 'http://127.0.0.1:9000', 'null', '', 'http://['])
 def test_other_pages_may_not_speak_to_it(visit, origin):
     assert visit().get('/', headers={'origin': origin}).status_code == 403
     with pytest.raises(WebSocketDisconnect), visit().websocket_connect('/live', headers={'origin': origin}):

@@ -20,18 +20,20 @@ then the next form. A page that is done with asks for the next until it is there
 
 import html
 import secrets
+import socket
 import time
 from collections.abc import Callable, Mapping
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from string import Template
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import parse_qs
+
+from shared_control.loopback import LOOPBACK, is_loopback
 
 from .plan_file import Question
 from .progress import Scale
 
-LOOPBACK = ('127.0.0.1', 'localhost')
 LAST_WORDS = 60.0
 """How long the last page waits for somebody to read it, s."""
 SIZE_MAX = 100_000
@@ -58,7 +60,8 @@ class FormPage:
     @property
     def address(self) -> str:
         """What the participant opens."""
-        return f'http://{self._host}:{self._port}/'
+        host = f'[{self._host}]' if ':' in self._host else self._host
+        return f'http://{host}:{self._port}/'
 
     def consent(self, text: str) -> bool:
         """See :class:`.asking.Asker`."""
@@ -125,9 +128,9 @@ class FormPage:
             def do_POST(self) -> None:
                 if not self.is_allowed():
                     return
-                size = int(self.headers.get('Content-Length', '0') or 0)
+                size = self.headers.get('Content-Length', '')
                 given = {name: values[-1] for name, values in parse_qs(
-                    self.rfile.read(min(max(size, 0), SIZE_MAX)).decode(errors='replace'),
+                    self.rfile.read(min(int(size), SIZE_MAX) if size.isdecimal() else 0).decode(errors='replace'),
                     keep_blank_values=True).items()}
                 answer = read(given) if given.get('key') == key else None
                 if answer is not None and not answers:
@@ -149,7 +152,7 @@ class _Handler(BaseHTTPRequestHandler):
     def is_allowed(self) -> bool:
         """Whether it comes from this machine and from this page; otherwise it is refused."""
         host, origin = self.headers.get('Host', ''), self.headers.get('Origin')
-        if urlsplit(f'//{host}').hostname in LOOPBACK and origin in (None, f'http://{host}'):
+        if is_loopback(host) and origin in (None, f'http://{host}'):
             return True
         self.send('this page is served to this machine only', 'refused', 403)
         return False
@@ -172,6 +175,10 @@ class _Server(ThreadingHTTPServer):
     allow_reuse_address = True
     daemon_threads = False
     timeout = 0.5
+
+    def __init__(self, address: tuple[str, int], handler: type[_Handler]):
+        self.address_family = socket.AF_INET6 if ':' in address[0] else socket.AF_INET
+        super().__init__(address, handler)
 
 
 def _page(kind: str, title: str, text: str, fields: str = '', buttons: str = '', key: str = '') -> str:

@@ -1,0 +1,27 @@
+# Copyright 2026 shared-control maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Names of this machine, by which it is reached from nowhere else."""
+
+from urllib.parse import urlsplit
+
+LOOPBACK = ('127.0.0.1', 'localhost', '::1')
+
+
+def is_loopback(authority: str) -> bool:
+    """Whether a ``Host`` header, which anybody may have written, is a name of this machine, with or without a port."""
+    try:
+        return urlsplit(f'//{authority}').hostname in LOOPBACK
+    except ValueError:
+        return False
