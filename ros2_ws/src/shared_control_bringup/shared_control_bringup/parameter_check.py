@@ -19,6 +19,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from shared_control.robot.spec_file import is_path, load_robot
 from shared_control_ros.declarations import Declaration, declarations
 
 from .graph import ALL_NODES
@@ -52,7 +53,7 @@ def check_values(given: dict[str, dict[str, Any]], path: Path) -> None:
                 there_are = ', '.join(sorted({declaration.name for declaration in declared}))
                 raise ValueError(f'{path}: {node} has no parameter {name!r}; there are {there_are}')
             for declaration in meant:
-                if problem := _problem(declaration, value):
+                if problem := _problem(declaration, value) or (_robot_problem(value) if name == 'robot' else ''):
                     raise ValueError(f'{path}: parameter {name!r} of {node} {problem}')
 
 
@@ -79,4 +80,15 @@ def _problem(declaration: Declaration, value: Any) -> str:
     if declaration.minimum is not None and declaration.maximum is not None and not (
             declaration.minimum <= value <= declaration.maximum):
         return f'must be at least {declaration.minimum} and at most {declaration.maximum}, not {value}'
+    return ''
+
+
+def _robot_problem(name: str) -> str:
+    """What is wrong with a robot; its file is found from wherever the session goes on."""
+    if is_path(name) and not Path(name).expanduser().is_absolute():
+        return f'must be the whole path of its file: write {Path(name).absolute()}'
+    try:
+        load_robot(name)
+    except ValueError as error:
+        return f'cannot be used: {error}'
     return ''

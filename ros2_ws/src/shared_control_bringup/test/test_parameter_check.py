@@ -45,6 +45,10 @@ def check(**nodes):
     ('teach_page_node', 'token: 1234', 'must be of type str'),
     ('teleop_key_node', 'joy_scale: [1, 1]', 'must be a list of float, and 1 is none'),
     ('teleop_key_node', 'failure_button: 64', 'at most 63'),
+    ('panda_sim_node', 'robot: mine.yaml', r'must be the whole path of its file: write /.*/mine\.yaml'),
+    ('/**', 'robot: ../mine.yaml', 'must be the whole path'),
+    ('panda_sim_node', 'robot: /nowhere/mine.yaml', 'cannot be used: .*/nowhere/mine.yaml'),
+    ('panda_sim_node', 'robot: pandda', 'cannot be used: .*pandda'),
     ('/**', 'seeds: 1', "no parameter 'seeds'"),
     ('/**', 'command_timeout: 1', 'must be of type float'),
 ])

@@ -55,10 +55,15 @@ def load_robot(name_or_path: str) -> RobotSpec:
         ValueError: no robot has that name.
         RobotFileError: the file cannot be read or used.
     """
-    if '/' in name_or_path or Path(name_or_path).suffix in ('.yaml', '.yml'):
+    if is_path(name_or_path):
         return _read(Path(name_or_path).expanduser(), Path(name_or_path).stem)
     found = load(ROBOTS, name_or_path)
     return _read(Path(found() if callable(found) else found), name_or_path)
+
+
+def is_path(name_or_path: str) -> bool:
+    """Whether :func:`load_robot` takes it as a path."""
+    return '/' in name_or_path or Path(name_or_path).suffix in ('.yaml', '.yml')
 
 
 def panda() -> RobotSpec:
