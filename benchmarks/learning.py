@@ -26,6 +26,7 @@ from scipy.stats import bootstrap
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
+from shared_control.processes import begin_worker
 from shared_control.tasks.task import Task
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.tutors import tutor_named
@@ -242,7 +243,7 @@ def main() -> None:
     if args.against is not None and args.against not in args.conditions:
         parser.error(f'--against {args.against}: it is not among the --conditions')
     rows: list[dict[str, Any]] = []
-    with ProcessPoolExecutor(args.workers) as pool:
+    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
         for name in args.conditions:
             futures = [pool.submit(run, name, seed, args.output / name / f'{seed:03}', args.episodes, args.retention)
                        for seed in range(args.seeds)]

@@ -19,6 +19,7 @@ import numpy as np
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
+from shared_control.processes import begin_worker
 from shared_control.teaching.tutors import make_tutor, tutor_named
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
@@ -112,7 +113,7 @@ def main() -> None:
                         help='processes (default: one a core)')
     args = parser.parse_args()
     changes = [change.name for change in CHANGES] if args.all else ASKED
-    with ProcessPoolExecutor(args.workers) as pool:
+    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
         for folder in args.folders:
             runs = sorted(path.parent for path in folder.glob(f'*/{POLICY_NAME}'))
             print(f'{folder}: {len(runs)} policies; the tutor is simulated')

@@ -24,6 +24,7 @@ from learning import randomized_test
 from shared_control.command_line import script_parser
 from shared_control.control.sharing import Sharing
 from shared_control.plugins import TASKS, load
+from shared_control.processes import begin_worker
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.baselines.presets import DCOACH, PVP, SAC_INTERVENTIONS
 from shared_control_learning.evaluation.evaluate import TEST_SEED
@@ -206,7 +207,7 @@ def main() -> None:
     for name in args.subjects:
         if name not in SUBJECTS:
             parser.error(f'no {name}; there are {", ".join(SUBJECTS)}')
-    with ProcessPoolExecutor(args.workers) as pool:
+    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
         for name in args.subjects or SUBJECTS:
             search(name, pool, args.output, args.table)
 
