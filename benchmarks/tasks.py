@@ -49,8 +49,8 @@ ALONE_EPISODES = 300
 """At most, as the issue asks."""
 ALONE_TESTED_EVERY = 5
 ALONE_NETWORK = PpoPreset('autonomous', AUTONOMOUS.task, replace(AUTONOMOUS.settings, ppo=PpoSettings(
-    hidden=(64, 64), value_hidden=(64, 64), initial_std=0.6, std_decay=None, std_min=0.2, learning_rate=3e-3,
-    gamma=0.995, entropy_weight=0.003)), taught=False)
+    hidden=(64, 64), value_hidden=(64, 64), initial_std=0.6, std_decay=None, learning_rate=3e-3, gamma=0.995,
+    entropy_weight=0.003)), taught=False)
 """The best of the search ``benchmarks/tune.py alone``."""
 
 
