@@ -14,9 +14,7 @@ the command is given again.
 """
 
 import json
-import os
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,7 +24,6 @@ from scipy.stats import bootstrap
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
-from shared_control.processes import begin_worker
 from shared_control.tasks.task import Task
 from shared_control.teaching.families import FAMILIES
 from shared_control.teaching.tutors import tutor_named
@@ -39,6 +36,7 @@ from shared_control_learning.presets import preset
 from shared_control_learning.training import TEST_OFFSET, passes_now, train
 from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
+from workers import add_workers, worker_pool
 
 RETENTION_EPISODES = 20
 RETENTION_TESTED_EVERY = 5
@@ -235,15 +233,14 @@ def main() -> None:
     parser.add_argument('--retention', action='store_true', help='20 further episodes without the tutor')
     parser.add_argument('--against', choices=tuple(CONDITIONS), metavar='NAME',
                         help='compare all others with this one of the conditions (default: no comparison)')
-    parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
-                        help='processes (default: one a core)')
+    add_workers(parser)
     parser.add_argument('--output', type=Path, default=Path('out/learning'), metavar='FOLDER',
                         help='folder of the runs')
     args = parser.parse_args()
     if args.against is not None and args.against not in args.conditions:
         parser.error(f'--against {args.against}: it is not among the --conditions')
     rows: list[dict[str, Any]] = []
-    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
+    with worker_pool(args.workers) as pool:
         for name in args.conditions:
             futures = [pool.submit(run, name, seed, args.output / name / f'{seed:03}', args.episodes, args.retention)
                        for seed in range(args.seeds)]

@@ -15,8 +15,6 @@ Skilled: 19 of 20 randomised episodes, in two tests in a row. All tutors are sim
 """
 
 import json
-import os
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,7 +25,6 @@ from scipy.linalg import solve_discrete_are
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, load
-from shared_control.processes import begin_worker
 from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task, settled
 from shared_control.teaching.profiles import EXPERT
@@ -42,6 +39,7 @@ from shared_control_learning.settings import PpoSettings
 from shared_control_learning.training import train
 from shared_control_sim.local_plant import LocalPlant
 from tqdm import tqdm
+from workers import add_workers, worker_pool
 
 TAUGHT_EPISODES = 30
 """At most."""
@@ -179,15 +177,14 @@ def main() -> None:
     parser.add_argument('--conditions', nargs='+', choices=CONDITIONS, default=CONDITIONS, metavar='NAME',
                         help=f'of {", ".join(CONDITIONS)} (default: all)')
     parser.add_argument('--seeds', type=int, default=24, metavar='N', help='runs of each condition')
-    parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
-                        help='processes (default: one a core)')
+    add_workers(parser)
     parser.add_argument('--output', type=Path, default=Path('out/tasks'), metavar='FOLDER', help='folder of the runs')
     parser.add_argument('--table', action='store_true', help='run nothing: print what there is')
     args = parser.parse_args()
     results: dict[str, list[dict[str, Any]]] = {name: [] for name in args.conditions}
     wanted = [(name, seed) for seed in range(args.seeds) for name in args.conditions
               if not args.table or (args.output / name / f'{seed:03}' / 'result.json').exists()]
-    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
+    with worker_pool(args.workers) as pool:
         futures = [pool.submit(run, name, seed, args.output) for name, seed in wanted]
         for (name, _), future in zip(wanted, tqdm(futures, unit='run', disable=None), strict=True):
             results[name].append(future.result())

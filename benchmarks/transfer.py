@@ -10,8 +10,6 @@ that is stopped goes on when the command is given again.
 """
 
 import json
-import os
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,6 @@ import numpy as np
 from shared_control.command_line import script_parser
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
-from shared_control.processes import begin_worker
 from shared_control.teaching.tutors import make_tutor, tutor_named
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
@@ -32,6 +29,7 @@ from shared_control_learning.training import passes_now
 from shared_control_sim.changed_plant import ChangedPlant, senses_of
 from shared_control_sim.changes import CHANGES, change_named
 from tqdm import tqdm
+from workers import add_workers, worker_pool
 
 ASKED = ('as taught', 'tray askew by -1 deg', 'tray askew by +1 deg', "FER's inertias in the controller",
          'ball of 0.6 kg', 'friction of 0.5 N m in the joints', 'seen 40 ms late with noise')
@@ -109,11 +107,10 @@ def main() -> None:
     parser.add_argument('--all', action='store_true', help='every change of "shared-control evaluate"')
     parser.add_argument('--tutor', default='expert', metavar='NAME', help='profile or family that teaches again')
     parser.add_argument('--no-teaching', action='store_true', help='tests alone')
-    parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
-                        help='processes (default: one a core)')
+    add_workers(parser)
     args = parser.parse_args()
     changes = [change.name for change in CHANGES] if args.all else ASKED
-    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
+    with worker_pool(args.workers) as pool:
         for folder in args.folders:
             runs = sorted(path.parent for path in folder.glob(f'*/{POLICY_NAME}'))
             print(f'{folder}: {len(runs)} policies; the tutor is simulated')

@@ -12,7 +12,6 @@ again (out/tune). All tutors are simulated.
 """
 
 import json
-import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
@@ -24,7 +23,6 @@ from learning import randomized_test
 from shared_control.command_line import script_parser
 from shared_control.control.sharing import Sharing
 from shared_control.plugins import TASKS, load
-from shared_control.processes import begin_worker
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.baselines.presets import DCOACH, PVP, SAC_INTERVENTIONS
 from shared_control_learning.evaluation.evaluate import TEST_SEED
@@ -34,6 +32,7 @@ from shared_control_learning.settings import PpoSettings
 from shared_control_learning.training import train
 from tasks import ALONE_NETWORK
 from tqdm import tqdm
+from workers import add_workers, worker_pool
 
 PHYSICS = 'mujoco'
 FIRST_SEED = 100
@@ -199,15 +198,14 @@ def main() -> None:
     """Entry point."""
     parser = script_parser(__doc__)
     parser.add_argument('subjects', nargs='*', metavar='NAME', help=f'of {", ".join(SUBJECTS)} (default: all)')
-    parser.add_argument('--workers', type=int, default=os.cpu_count(), metavar='N',
-                        help='processes (default: one a core)')
+    add_workers(parser)
     parser.add_argument('--output', type=Path, default=Path('out/tune'), metavar='FOLDER', help='folder of the runs')
     parser.add_argument('--table', action='store_true', help='run nothing: print what there is')
     args = parser.parse_args()
     for name in args.subjects:
         if name not in SUBJECTS:
             parser.error(f'no {name}; there are {", ".join(SUBJECTS)}')
-    with ProcessPoolExecutor(args.workers, initializer=begin_worker, initargs=(os.getpid(),)) as pool:
+    with worker_pool(args.workers) as pool:
         for name in args.subjects or SUBJECTS:
             search(name, pool, args.output, args.table)
 

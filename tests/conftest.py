@@ -1,6 +1,6 @@
 """Fixtures of this folder: whole sessions in processes of their own, in a terminal or without one."""
 
-import importlib.util
+import importlib
 import json
 import sys
 import time
@@ -27,18 +27,13 @@ def pytest_collection_modifyitems(items):
 @pytest.fixture(scope='module')
 def load_benchmark():
     """``load_benchmark(name)``: that script of benchmarks/ as a module."""
-    loaded = []
-
-    def load(name: str):
-        spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f'{name}.py')
-        module = sys.modules[name] = importlib.util.module_from_spec(spec)
-        loaded.append(name)
-        spec.loader.exec_module(module)
-        return module
-
-    yield load
-    for name in loaded:
-        del sys.modules[name]
+    before = set(sys.modules)
+    sys.path.insert(0, str(BENCHMARKS))  # as for a script, which imports others from its folder
+    yield importlib.import_module
+    sys.path.remove(str(BENCHMARKS))
+    for name in set(sys.modules) - before:
+        if Path(getattr(sys.modules[name], '__file__', None) or '').parent == BENCHMARKS:
+            del sys.modules[name]
 
 
 class TerminalSession(Session, Terminal):
