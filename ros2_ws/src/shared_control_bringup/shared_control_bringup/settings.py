@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.control.sharing import WAYS, Sharing
-from shared_control.plugins import LEARNERS, ROBOTS, TASKS, WORLDS, names
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.feedback import FEEDBACK
 from shared_control.teaching.tutors import TUTOR_NAMES
 
@@ -119,10 +119,11 @@ class Settings:
         Raises:
             ValueError: the preset cannot learn the task, or its moments cannot be shared like this.
         """
-        from shared_control_learning.presets import preset_for  # late: `--help` need not wait for pinocchio
+        from shared_control.robot.spec_file import is_path  # late: `--help` need not wait for numpy and pinocchio
+        from shared_control_learning.presets import preset_for
         chosen = preset_for(self.task, self.preset)
         chosen.check(Sharing(self.sharing))
-        robot = self.robot if self.robot in ('', *names(ROBOTS)) else str(Path(self.robot).expanduser().absolute())
+        robot = str(Path(self.robot).expanduser().absolute()) if is_path(self.robot) else self.robot
         return replace(self, task=chosen.task.name, preset=chosen.name, robot=robot)
 
     def with_options(self, given: dict[str, Any]) -> 'Settings':

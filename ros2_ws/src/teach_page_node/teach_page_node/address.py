@@ -22,7 +22,7 @@ import secrets
 import socket
 
 from shared_control.files import state_folder
-from shared_control.loopback import LOOPBACK
+from shared_control.hosts import LOOPBACK, family_of, url_of
 from shared_control.processes import starter
 
 TOKEN_VARIABLE = 'SHARED_CONTROL_PAGE_TOKEN'
@@ -68,9 +68,8 @@ def listen(host: str, port: int) -> socket.socket:
     Raises:
         OSError: the address cannot be had; the message names it.
     """
-    family = socket.AF_INET6 if ':' in host else socket.AF_INET
     try:
-        return socket.create_server((host, port), family=family)
+        return socket.create_server((host, port), family=family_of(host))
     except OSError as error:
         raise OSError(f'cannot serve the page at {host}:{port} ({error.strerror}): name another host or port, '
                       'port 0 for any that is free') from error
@@ -96,5 +95,4 @@ def page_address(host: str, port: int, token: str | None) -> str:
     """
     if host in ('0.0.0.0', '::'):
         host = socket.gethostname()
-    name = f'[{host}]' if ':' in host else host
-    return f'http://{name}:{port}/' + (f'?token={token}' if token else '')
+    return url_of(host, port) + (f'?token={token}' if token else '')

@@ -23,7 +23,7 @@ import hashlib
 import secrets
 from urllib.parse import parse_qs
 
-from shared_control.loopback import is_loopback
+from shared_control.hosts import is_loopback
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send

@@ -20,7 +20,6 @@ then the next form. A page that is done with asks for the next until it is there
 
 import html
 import secrets
-import socket
 import time
 from collections.abc import Callable, Mapping
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -29,7 +28,7 @@ from string import Template
 from typing import Any
 from urllib.parse import parse_qs
 
-from shared_control.loopback import LOOPBACK, is_loopback
+from shared_control.hosts import LOOPBACK, family_of, is_loopback, url_of
 
 from .plan_file import Question
 from .progress import Scale
@@ -60,8 +59,7 @@ class FormPage:
     @property
     def address(self) -> str:
         """What the participant opens."""
-        host = f'[{self._host}]' if ':' in self._host else self._host
-        return f'http://{host}:{self._port}/'
+        return url_of(self._host, self._port)
 
     def consent(self, text: str) -> bool:
         """See :class:`.asking.Asker`."""
@@ -177,7 +175,7 @@ class _Server(ThreadingHTTPServer):
     timeout = 0.5
 
     def __init__(self, address: tuple[str, int], handler: type[_Handler]):
-        self.address_family = socket.AF_INET6 if ':' in address[0] else socket.AF_INET
+        self.address_family = family_of(address[0])
         super().__init__(address, handler)
 
 

@@ -12,11 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Names of this machine, by which it is reached from nowhere else."""
+"""The host of a server, as it is named to sockets and to browsers."""
 
+import socket
 from urllib.parse import urlsplit
 
 LOOPBACK = ('127.0.0.1', 'localhost', '::1')
+"""Names of this machine, by which it is reached from nowhere else."""
 
 
 def is_loopback(authority: str) -> bool:
@@ -25,3 +27,14 @@ def is_loopback(authority: str) -> bool:
         return urlsplit(f'//{authority}').hostname in LOOPBACK
     except ValueError:
         return False
+
+
+def family_of(host: str) -> socket.AddressFamily:
+    """The address family of a socket that listens on ``host``."""
+    return socket.AF_INET6 if ':' in host else socket.AF_INET
+
+
+def url_of(host: str, port: int) -> str:
+    """What a browser opens."""
+    name = f'[{host}]' if ':' in host else host
+    return f'http://{name}:{port}/'
