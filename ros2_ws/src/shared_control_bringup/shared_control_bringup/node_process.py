@@ -26,7 +26,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from shared_control_ros.processes import leave_with_the_parent, node_environment, node_module
-from shared_control_ros.readiness import READY_FD
+from shared_control_ros.readiness import DONE, READY, READY_FD
 
 REAL_TIME_PRIORITY = 49
 """Priority of the threads of a node in the control loop (SCHED_RR), where `ulimit -r` allows it. The loop's own thread
@@ -50,8 +50,9 @@ class NodeProcess:
         parameters: ROS parameter file.
         log: where stdout and stderr go, appended.
         in_foreground: stay in this process' group, so that the node can use the terminal.
-        in_control_loop: give it the core of the control loop.
-        in_real_time: give the control loop real-time priority; an unpaced one would take its core from all others.
+        in_control_loop: it is a part of the control loop.
+        in_real_time: give the control loop a core of its own, and real-time priority; an unpaced one would take them
+            from all others.
         environment: variables that this node alone is given.
         after: name of the node that must be ready before this one starts.
     """
@@ -72,7 +73,9 @@ class NodeProcess:
                          '--disable-external-lib-logs']
         self._in_foreground = in_foreground
         self._process: subprocess.Popen | None = None
-        self._ready_pipe: int | None = None
+        self._pipe: int | None = None
+        self._is_starting = False
+        self._is_done = False
 
     def start(self, confined: bool = True) -> None:
         """Start it, or start it again.
@@ -84,8 +87,9 @@ class NodeProcess:
         self.starts += 1
         self.started = time.monotonic()
         self._starts_confined = confined
-        self._close_ready_pipe()
-        self._ready_pipe, theirs = os.pipe()
+        self._close_pipe()
+        self._pipe, theirs = os.pipe()
+        self._is_starting, self._is_done = True, False
         environment = {**node_environment(), **self._environment, READY_FD: str(theirs)}
         try:
             with self.log.open('ab') as log:
@@ -105,24 +109,28 @@ class NodeProcess:
         """In the new process: a core for the control loop, the others for everybody else.
 
         Simulator and controller take turns, so one core serves both, and waking the other needs no second one: on two
-        cores a tick then takes 0.65 instead of 0.77 ms, and its 99th percentile 1.2 instead of 3.3 ms.
+        cores a tick then takes 0.65 instead of 0.77 ms, and its 99th percentile 1.2 instead of 3.3 ms. An unpaced loop
+        never sleeps: two of them on one core, Linux let one session stand still until the other had ended (its share
+        for a group of processes, autogroup, goes wrong where they cannot change cores).
         """
         leave_with_the_parent()
         *others, last = sorted(os.sched_getaffinity(0))
-        if self._in_control_loop:
+        if not others:
+            if not self._in_control_loop:
+                os.nice(NICENESS)
+        elif not self._in_real_time:
+            return
+        elif self._in_control_loop:
             os.sched_setaffinity(0, {last})
-            if others and self._in_real_time:
-                with suppress(PermissionError):
-                    os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(REAL_TIME_PRIORITY))
-        elif not others:
-            os.nice(NICENESS)
+            with suppress(PermissionError):
+                os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(REAL_TIME_PRIORITY))
         elif self._starts_confined:
             os.sched_setaffinity(0, others)
 
     def confine(self) -> None:
         """Leave the core of the control loop to it from now on."""
         *others, _ = sorted(os.sched_getaffinity(0))
-        if self._in_control_loop or not others or self.exit_code() is not None:
+        if not self._in_real_time or self._in_control_loop or not others or self.exit_code() is not None:
             return
         confined: set[str] = set()
         # Threads that begin meanwhile have what their makers had: look until there is none that was not seen.
@@ -135,24 +143,30 @@ class NodeProcess:
     @property
     def is_starting(self) -> bool:
         """Whether it has neither said that it is ready nor ended."""
-        return self._ready_pipe is not None
+        return self._is_starting
 
     def wait_ready(self, seconds: float) -> bool:
         """Wait until it says that it is ready, has ended, or the time is over; whether it is ready."""
-        if self._ready_pipe is None or not select.select([self._ready_pipe], [], [], seconds)[0]:
+        if not self._is_starting or self._pipe is None or not select.select([self._pipe], [], [], seconds)[0]:
             return False
-        said = os.read(self._ready_pipe, 64)
-        self._close_ready_pipe()
-        return bool(said)
+        self._is_starting = False
+        return os.read(self._pipe, len(READY)) == READY
 
-    def _close_ready_pipe(self) -> None:
-        if self._ready_pipe is not None:
-            os.close(self._ready_pipe)
-            self._ready_pipe = None
+    def _close_pipe(self) -> None:
+        if self._pipe is not None:
+            os.close(self._pipe)
+            self._pipe = None
 
     def exit_code(self) -> int | None:
-        """None while it runs."""
-        return None if self._process is None else self._process.poll()
+        """None while it runs; 0, too, where all was done and the middleware alone was too long in taking leave."""
+        code = None if self._process is None else self._process.poll()
+        return 0 if code == -signal.SIGALRM and self._said_done() else code
+
+    def _said_done(self) -> bool:
+        """Whether it said before its end that all was done."""
+        if self._pipe is not None and select.select([self._pipe], [], [], 0.0)[0]:
+            self._is_done |= DONE in os.read(self._pipe, 64)
+        return self._is_done
 
     def interrupt(self) -> None:
         """Ask it to leave cleanly."""
@@ -186,7 +200,7 @@ class NodeProcess:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
-        self._close_ready_pipe()
+        self._is_starting = False
 
     def newest_warning(self) -> tuple[float, str] | None:
         """The newest warning or error in the end of its log: when it came, s of the time of the day, and its text."""

@@ -22,7 +22,7 @@ import time
 from pathlib import Path
 
 import pytest
-from shared_control_bringup import parameters
+from shared_control_bringup import node_process, parameters
 from shared_control_bringup.node_process import NodeProcess
 from shared_control_bringup.supervisor import SessionError, Supervisor
 
@@ -114,6 +114,59 @@ def test_a_node_that_dies_again_and_again_ends_the_session(make_node):
     with pytest.raises(SessionError, match='died 6 times within a minute'):
         poll_until(supervisor, kill)
     supervisor.stop()
+
+
+LATE_LEAVER = """
+import time
+from rclpy.node import Node
+from shared_control_ros import runner
+
+class Late(Node):
+    def destroy_node(self):
+        time.sleep(60.0)
+
+class Work:
+    def __init__(self):
+        self.node = Late('late_leaver')
+    def run(self, stop):
+        {run}
+    def close(self):
+        pass
+
+runner.LEAVE_SECONDS = 0.2
+raise SystemExit(runner.run(Work))
+"""
+
+
+@pytest.mark.parametrize(('run', 'finished'), [('pass', True), ('raise KeyError', False)])
+def test_a_leader_that_has_done_all_is_not_started_again_for_a_late_leave(domain_id, tmp_path, monkeypatch, run,
+                                                                          finished):
+    (tmp_path / 'late_leaver.py').write_text(LATE_LEAVER.replace('{run}', run))
+    (tmp_path / 'p.yaml').write_text('')
+    monkeypatch.setattr(node_process, 'node_module', lambda name: name)
+    said = []
+    node = NodeProcess('late_leaver', tmp_path / 'p.yaml', tmp_path / 'log', environment={'PYTHONPATH': str(tmp_path)})
+    supervisor = Supervisor([node], 'late_leaver', said.append)
+    supervisor.start()
+    try:
+        while supervisor.poll() and not said:
+            time.sleep(0.05)
+    finally:
+        supervisor.stop()
+    assert bool(said) is not finished
+
+
+def test_an_unpaced_loop_shares_all_cores(make_node):
+    """Pinned to one core, one of two such sessions stood still until the other had ended."""
+    node = make_node('torque_ctrl_node', in_control_loop=True)
+    node.start()
+    try:
+        assert node.wait_ready(60.0)
+        node.confine()
+        assert os.sched_getaffinity(node.pid) == os.sched_getaffinity(0)
+    finally:
+        node.interrupt()
+        node.wait(60)
 
 
 def test_nodes_leave_when_the_session_is_killed(domain_id, tmp_path):

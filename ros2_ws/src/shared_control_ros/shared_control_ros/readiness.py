@@ -12,18 +12,29 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How a node tells the process that started it that it is ready: a line through an inherited pipe."""
+"""How a node tells the process that started it how far it is: lines through an inherited pipe."""
 
 import os
 from contextlib import suppress
 
 READY_FD = 'SHARED_CONTROL_READY_FD'
 """Environment variable: number of the file descriptor to write to. Who starts a node alone need not set it."""
+READY = b'ready\n'
+DONE = b'done\n'
+"""Nothing is left to do but to take leave of the middleware."""
 
 
-def tell_ready() -> None:
-    """Write a line to the pipe and close it, if there is one."""
-    number = os.environ.pop(READY_FD, '')  # not for the processes that this one may start
-    # Whoever waited may be gone, or may have handed on the variable without the pipe.
-    with suppress(OSError, ValueError), os.fdopen(int(number), 'w') as pipe:
-        pipe.write('ready\n')
+class ReadyPipe:
+    """The pipe to whoever started this process, if there is one; it ends with the process."""
+
+    def __init__(self) -> None:
+        self._number = -1
+        with suppress(OSError, ValueError):  # somebody may have handed on the variable without the pipe
+            number = int(os.environ.pop(READY_FD, ''))  # not for the processes that this one may start
+            os.set_inheritable(number, False)
+            self._number = number
+
+    def tell(self, line: bytes) -> None:
+        """Write ``READY`` or ``DONE``."""
+        with suppress(OSError):  # whoever waited may be gone
+            os.write(self._number, line)

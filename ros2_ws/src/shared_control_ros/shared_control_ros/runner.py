@@ -29,7 +29,7 @@ from shared_control.streams import open_closed_streams
 
 from .parameters import ParameterError
 from .processes import adopt_node_environment
-from .readiness import tell_ready
+from .readiness import DONE, READY, ReadyPipe
 from .real_time import put_loop_above_other_threads
 from .watchdog import leave_within
 
@@ -67,6 +67,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
         The exit code: 0, or 2 when a parameter or a file is unusable (said in one line on stderr).
     """
     open_closed_streams()
+    pipe = ReadyPipe()
     if args is None:
         args = sys.argv
     adopt_node_environment()  # a node that was started by hand keeps to this machine, too
@@ -77,24 +78,28 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
             signal.signal(number, stop)
     faulthandler.register(signal.SIGUSR1, 2)  # who started it asks so where it stands still
     runnable: Runnable | None = None
+    code = 1
     try:
         runnable = make()
         put_loop_above_other_threads()
         runnable.node.get_logger().info('ready')
-        tell_ready()
+        pipe.tell(READY)
         runnable.run(stop)
-        return 0
+        code = 0
     except (ParameterError, OSError) as error:
         print(f'error: {error}', file=sys.stderr)
-        return 2
+        code = 2
     except ROSInterruptException:
-        return 0
+        code = 0
     finally:
         if runnable is not None:
             runnable.close()
+            if code == 0:
+                pipe.tell(DONE)
             leave_within(LEAVE_SECONDS)
             runnable.node.destroy_node()
         rclpy.try_shutdown()
+    return code
 
 
 def _log_arguments() -> list[str]:

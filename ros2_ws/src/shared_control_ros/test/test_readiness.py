@@ -16,27 +16,31 @@
 
 import os
 
-import pytest
-from shared_control_ros.readiness import READY_FD, tell_ready
+from shared_control_ros.readiness import DONE, READY, READY_FD, ReadyPipe
 
 
-def test_a_line_goes_through_the_pipe_and_closes_it(monkeypatch):
+def test_lines_go_through_the_pipe_that_was_handed_over(monkeypatch):
     ours, theirs = os.pipe()
+    os.set_inheritable(theirs, True)
     monkeypatch.setenv(READY_FD, str(theirs))
-    tell_ready()
-    assert os.read(ours, 64) == b'ready\n' and os.read(ours, 64) == b''
-    assert READY_FD not in os.environ, 'its own children are not concerned'
+    pipe = ReadyPipe()
+    assert READY_FD not in os.environ and not os.get_inheritable(theirs), 'its own children are not concerned'
+    pipe.tell(READY)
+    assert os.read(ours, 64) == READY
+    pipe.tell(DONE)
+    os.close(theirs)
+    assert os.read(ours, 64) == DONE and os.read(ours, 64) == b''
     os.close(ours)
 
 
 def test_nobody_needs_to_wait(monkeypatch):
     monkeypatch.delenv(READY_FD, raising=False)
-    tell_ready()
-    monkeypatch.setenv(READY_FD, '987654')
-    tell_ready()
+    ReadyPipe().tell(READY)
+    for handed_on_without_a_pipe in ('987654', '-1', 'three'):
+        monkeypatch.setenv(READY_FD, handed_on_without_a_pipe)
+        ReadyPipe().tell(READY)
     ours, theirs = os.pipe()
     os.close(ours)
     monkeypatch.setenv(READY_FD, str(theirs))
-    tell_ready()
-    with pytest.raises(OSError):
-        os.fstat(theirs)
+    ReadyPipe().tell(READY)
+    os.close(theirs)

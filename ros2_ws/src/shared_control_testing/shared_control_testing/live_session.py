@@ -49,13 +49,14 @@ class Session:
         return self.process.communicate(timeout=timeout)[0]
 
     def close(self) -> None:
-        """End it, if it has not ended."""
+        """End it, if it has not ended, and print what it has said, which tells why it had not."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
             try:
-                self.process.wait(60)
+                said = self.process.communicate(timeout=60)[0]
             except subprocess.TimeoutExpired:
                 self.process.kill()
-                self.process.wait()
+                said = self.process.communicate()[0]
+            print(said or '')
         if self.process.stdout:
             self.process.stdout.close()
