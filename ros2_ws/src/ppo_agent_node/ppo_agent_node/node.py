@@ -36,7 +36,6 @@ from shared_control.files import write_atomically
 from shared_control.plant import PlantInterrupted
 from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.rates import POLICY_PERIOD
-from shared_control.verdict import Verdict
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.episode_table import TABLE_NAME, EpisodeTable
@@ -335,11 +334,7 @@ class PpoAgentNode(Callbacks):
             f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '
             f'learned in {episode.learn_seconds:.2f} s')
         self._take_a_break(self._ended)
-
-    def is_discarded(self, episode: Episode) -> bool:
-        """See :class:`Callbacks`."""
         self._attend()
-        return episode.verdict is Verdict.DISCARD
 
     def episode_unlearned(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""

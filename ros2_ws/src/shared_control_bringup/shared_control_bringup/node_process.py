@@ -14,6 +14,7 @@
 
 """One node of the graph as a process."""
 
+import math
 import os
 import re
 import select
@@ -69,13 +70,16 @@ class NodeProcess:
         self.starts = 0
         self.started = 0.0
         """When it was started last, s of the monotonic clock."""
+        self.ready_since = math.inf
+        """When it was seen to be ready, s of the monotonic clock; infinite until then."""
         self._command = [sys.executable, '-m', node_module(name), '--ros-args', '--params-file', str(parameters),
                          '--disable-external-lib-logs']
         self._in_foreground = in_foreground
         self._process: subprocess.Popen | None = None
         self._pipe: int | None = None
         self._is_starting = False
-        self._is_done = False
+        self._has_done = False
+        self._log_begins = 0
 
     def start(self, confined: bool = True) -> None:
         """Start it, or start it again.
@@ -89,10 +93,11 @@ class NodeProcess:
         self._starts_confined = confined
         self._close_pipe()
         self._pipe, theirs = os.pipe()
-        self._is_starting, self._is_done = True, False
+        self._is_starting, self._has_done, self.ready_since = True, False, math.inf
         environment = {**node_environment(), **self._environment, READY_FD: str(theirs)}
         try:
             with self.log.open('ab') as log:
+                self._log_begins = log.tell()
                 self._process = subprocess.Popen(
                     self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment,
                     pass_fds=(theirs,), process_group=None if self._in_foreground else 0, preexec_fn=self._prepare)
@@ -150,7 +155,10 @@ class NodeProcess:
         if not self._is_starting or self._pipe is None or not select.select([self._pipe], [], [], seconds)[0]:
             return False
         self._is_starting = False
-        return os.read(self._pipe, len(READY)) == READY
+        is_ready = os.read(self._pipe, len(READY)) == READY
+        if is_ready:
+            self.ready_since = time.monotonic()
+        return is_ready
 
     def _close_pipe(self) -> None:
         if self._pipe is not None:
@@ -158,30 +166,32 @@ class NodeProcess:
             self._pipe = None
 
     def exit_code(self) -> int | None:
-        """None while it runs; 0, too, where all was done and the middleware alone was too long in taking leave."""
-        code = None if self._process is None else self._process.poll()
-        return 0 if code == -signal.SIGALRM and self._said_done() else code
+        """None while it runs."""
+        return None if self._process is None else self._process.poll()
 
-    def _said_done(self) -> bool:
-        """Whether it said before its end that all was done."""
-        if self._pipe is not None and select.select([self._pipe], [], [], 0.0)[0]:
-            self._is_done |= DONE in os.read(self._pipe, 64)
-        return self._is_done
+    @property
+    def has_done(self) -> bool:
+        """Whether it has said that all was done: how it takes leave of the middleware after that tells nothing."""
+        self.wait_ready(0.0)
+        if self._pipe is not None and not self._is_starting and select.select([self._pipe], [], [], 0.0)[0]:
+            self._has_done |= os.read(self._pipe, len(DONE)) == DONE
+        return self._has_done
 
     def interrupt(self) -> None:
         """Ask it to leave cleanly."""
-        if self._process is not None and self.exit_code() is None:
-            self._process.send_signal(signal.SIGINT)
+        self._send(signal.SIGINT)
 
     def kill(self) -> None:
         """End it by force."""
-        if self.exit_code() is None:
-            os.kill(self.pid, signal.SIGKILL)
+        self._send(signal.SIGKILL)
 
     def write_traceback(self) -> None:
         """Have it write into its log what each of its threads is at (:func:`shared_control_ros.runner.run`)."""
-        if self.exit_code() is None:
-            os.kill(self.pid, signal.SIGUSR1)
+        self._send(signal.SIGUSR1)
+
+    def _send(self, number: int) -> None:
+        if self._process is not None:
+            self._process.send_signal(number)  # to nobody when it has ended
 
     def held_by(self) -> str:
         """What keeps it from running, in words; empty: nothing does."""
@@ -203,18 +213,18 @@ class NodeProcess:
         self._is_starting = False
 
     def newest_warning(self) -> tuple[float, str] | None:
-        """The newest warning or error in the end of its log: when it came, s of the time of the day, and its text."""
+        """The newest warning or error in the end of its log, of this start: when, s of the time of the day, and text."""
         try:
             with self.log.open('rb') as log:
-                log.seek(max(self.log.stat().st_size - LOG_END, 0))
+                log.seek(max(self.log.stat().st_size - LOG_END, self._log_begins))
                 found = _WARNING.findall(log.read().decode(errors='replace'))
         except OSError:
             return None
         return (float(found[-1][0]), found[-1][1]) if found else None
 
     def last_error(self) -> str:
-        """The last line it wrote that says something."""
-        text = self.log.read_text(encoding='utf-8', errors='replace')
+        """The last line that it has written since it was started, one with an error if there is any."""
+        text = self.log.read_bytes()[self._log_begins:].decode(errors='replace')
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         errors = [line for line in lines if 'error' in line.lower()]
         return (errors or lines or ['no output'])[-1]

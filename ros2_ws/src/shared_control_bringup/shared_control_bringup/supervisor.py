@@ -16,13 +16,17 @@
 
 import signal
 import time
+from collections import Counter
 from collections.abc import Callable
 
 from shared_control_ros.watchdog import STANDSTILL
 
 from .node_process import UNUSABLE, NodeProcess
 
-MAX_RESTARTS_A_MINUTE = 5
+MAX_RESTARTS = 5
+"""In a row, of a node that dies each time before it was ready for ``HEALTHY_SECONDS``."""
+HEALTHY_SECONDS = 20.0
+"""Twice what a loop may stand still before it is ended, s."""
 READY_SECONDS = 60.0
 """Until the first ready or not, all nodes together, s: a busy machine takes long to import torch."""
 START_POLL_SECONDS = 0.02
@@ -42,9 +46,9 @@ class Supervisor:
 
     Args:
         nodes: they stop in the reverse order.
-        leader: the node whose clean exit ends the session.
+        leader: the node that ends the session when it has done all.
         say: told of every restart.
-        stopper: the node whose clean exit stops the session.
+        stopper: the node that stops the session when it has done all.
         attend: called again and again while nodes start; may raise to give up.
     """
 
@@ -55,10 +59,14 @@ class Supervisor:
         self._stopper = stopper
         self._say = say
         self._attend = attend
-        self._deaths: dict[str, list[float]] = {}
+        self._early_deaths: Counter[str] = Counter()
 
     def start(self) -> None:
-        """Start the nodes side by side, but for those that wait for another, and wait until all are ready."""
+        """Start the nodes side by side, but for those that wait for another, and wait until all are ready.
+
+        Raises:
+            SessionError: a node cannot run with its parameters or files.
+        """
         deadline = time.monotonic() + READY_SECONDS
         waiting = list(self._nodes)
         while waiting or any(node.is_starting for node in self._nodes):
@@ -72,6 +80,7 @@ class Supervisor:
                 break
             for node in self._nodes:
                 node.wait_ready(0.0)
+                _require_usable(node)
             time.sleep(START_POLL_SECONDS)
         for node in self._nodes:
             node.confine()
@@ -87,22 +96,22 @@ class Supervisor:
             code = node.exit_code()
             if code is None:
                 continue
-            if node.name == self._leader and code == 0:
+            if node.name == self._leader and node.has_done:
                 return False
-            if node.name == self._stopper and code == 0:
+            if node.name == self._stopper and node.has_done:
                 raise StoppedByNode
-            if code == UNUSABLE:
-                raise SessionError(f'{node.name}: {node.last_error()}')
+            _require_usable(node)
             self._restart(node, code)
         return True
 
     def _restart(self, node: NodeProcess, code: int) -> None:
-        now = time.monotonic()
-        deaths = self._deaths[node.name] = [t for t in self._deaths.get(node.name, []) if now - t < 60.0] + [now]
-        if len(deaths) > MAX_RESTARTS_A_MINUTE:
+        if time.monotonic() - node.ready_since > HEALTHY_SECONDS:
+            self._early_deaths[node.name] = 0
+        self._early_deaths[node.name] += 1
+        if self._early_deaths[node.name] > MAX_RESTARTS:
             raise SessionError(
-                f'{node.name} died {len(deaths)} times within a minute ({_meaning(code)}): {node.last_error()}; '
-                f'see {node.log}')
+                f'{node.name} died {self._early_deaths[node.name]} times in a row, each time before it was ready for '
+                f'{HEALTHY_SECONDS:.0f} s ({_meaning(code)}): {node.last_error()}; see {node.log}')
         self._say(f'{node.name} died ({_meaning(code)}); starting it again')
         node.start()
 
@@ -120,7 +129,14 @@ class Supervisor:
         return sum(max(node.starts - 1, 0) for node in self._nodes)
 
 
+def _require_usable(node: NodeProcess) -> None:
+    if node.exit_code() == UNUSABLE:
+        raise SessionError(f'{node.name}: {node.last_error()}')
+
+
 def _meaning(code: int) -> str:
     if code == -signal.SIGALRM:
         return f'it stood still for {STANDSTILL:.0f} s'
+    if code == 0:
+        return 'somebody ended it'
     return f'signal {-code}' if code < 0 else f'exit code {code}'

@@ -97,13 +97,13 @@ def test_nobody_waits_for_a_node_that_has_ended(make_node):
 def test_a_wrong_parameter_ends_the_session_and_is_told(make_node):
     node = make_node('panda_sim_node', mode='sideways')
     supervisor = Supervisor([node], 'ppo_agent_node', print)
-    supervisor.start()
     with pytest.raises(SessionError, match=r"panda_sim_node: .*'mode' has no choice 'sideways'"):
-        poll_until(supervisor, lambda: False)
+        supervisor.start()
 
 
 def test_a_node_that_dies_again_and_again_ends_the_session(make_node):
     node = make_node('torque_ctrl_node')
+    node.log.write_text('[ERROR] [1.0] [torque_ctrl_node]: an error of an earlier run\n')
     supervisor = Supervisor([node], 'ppo_agent_node', lambda _: None)
     supervisor.start()
 
@@ -111,19 +111,31 @@ def test_a_node_that_dies_again_and_again_ends_the_session(make_node):
         os.kill(node.pid, signal.SIGKILL)
         return False
 
-    with pytest.raises(SessionError, match='died 6 times within a minute'):
+    with pytest.raises(SessionError, match='died 6 times in a row') as raised:
         poll_until(supervisor, kill)
     supervisor.stop()
+    assert 'earlier run' not in str(raised.value) and node.newest_warning() is None
+
+
+def test_a_leader_that_somebody_has_ended_has_not_done_its_work(make_node):
+    said = []
+    node = make_node('torque_ctrl_node')
+    supervisor = Supervisor([node], 'torque_ctrl_node', said.append)
+    supervisor.start()
+    os.kill(node.pid, signal.SIGTERM)
+    poll_until(supervisor, lambda: said)
+    supervisor.stop()
+    assert said == ['torque_ctrl_node died (somebody ended it); starting it again']
 
 
 LATE_LEAVER = """
-import time
+import os, time
 from rclpy.node import Node
 from shared_control_ros import runner
 
 class Late(Node):
     def destroy_node(self):
-        time.sleep(60.0)
+        {leave}
 
 class Work:
     def __init__(self):
@@ -138,10 +150,11 @@ raise SystemExit(runner.run(Work))
 """
 
 
-@pytest.mark.parametrize(('run', 'finished'), [('pass', True), ('raise KeyError', False)])
-def test_a_leader_that_has_done_all_is_not_started_again_for_a_late_leave(domain_id, tmp_path, monkeypatch, run,
-                                                                          finished):
-    (tmp_path / 'late_leaver.py').write_text(LATE_LEAVER.replace('{run}', run))
+@pytest.mark.parametrize(('run', 'leave', 'finished'), [
+    ('pass', 'time.sleep(60.0)', True), ('pass', 'os.abort()', True), ('raise KeyError', 'time.sleep(60.0)', False)])
+def test_a_leader_that_has_done_all_is_not_started_again_for_how_it_leaves(domain_id, tmp_path, monkeypatch, run, leave,
+                                                                           finished):
+    (tmp_path / 'late_leaver.py').write_text(LATE_LEAVER.replace('{run}', run).replace('{leave}', leave))
     (tmp_path / 'p.yaml').write_text('')
     monkeypatch.setattr(node_process, 'node_module', lambda name: name)
     said = []

@@ -36,11 +36,11 @@ class Callbacks:
         """The episode is over, the update begins: the time to let the arm rest."""
 
     def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
-        """The update is done, the learner consistent: the time to save it. ``figures``: of the update, by name."""
+        """The update is done, the learner consistent: the time to save it, and the last to give the episode a verdict.
 
-    def is_discarded(self, episode: Episode) -> bool:
-        """Called before the next episode: whether a person has discarded the one that was just learned from."""
-        return False
+        Args:
+            figures: of the update, by name.
+        """
 
     def episode_unlearned(self, episode: Episode) -> None:
         """The learner is again as it was before the discarded episode, and consistent: the time to save it."""

@@ -20,6 +20,7 @@ from collections.abc import Callable
 import numpy as np
 from shared_control.env import SharedControlEnv
 from shared_control.plant import PlantInterrupted
+from shared_control.verdict import Verdict
 
 from .callbacks import Callbacks
 from .episode import Episode
@@ -31,7 +32,7 @@ def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, 
           ) -> None:
     """Learn, one update an episode, until ``learner.episode`` is ``episodes`` or the callbacks say stop.
 
-    An episode that a person discards before the next one begins is unlearned, and its number is done again.
+    An episode whose verdict is ``discard`` before the next one begins is unlearned, and its number is done again.
 
     Args:
         episodes: in all, those of an earlier run included; no end when None.
@@ -51,10 +52,12 @@ def learn(learner: Learner, env: SharedControlEnv, episodes: int | None = None, 
         with one_thread():
             figures = learner.learn_from(episode)
         episode.learn_seconds = time.monotonic() - started
-        callbacks.episode_learned(episode, figures)
-        if callbacks.is_discarded(episode):
-            before.put_back(learner)
-            callbacks.episode_unlearned(episode)
+        try:
+            callbacks.episode_learned(episode, figures)
+        finally:  # whoever discards it and ends the session at once means both
+            if episode.verdict is Verdict.DISCARD:
+                before.put_back(learner)
+                callbacks.episode_unlearned(episode)
 
 
 def run_episode(act: Callable[[np.ndarray], np.ndarray], env: SharedControlEnv, seed: int, episode: Episode,

@@ -42,8 +42,9 @@ class Discard(Callbacks):
     def learning_started(self, episode):
         self.taught.append(episode.number)
 
-    def is_discarded(self, episode):
-        return episode.number == self.number and self.number not in self.unlearned
+    def episode_learned(self, episode, figures):
+        if episode.number == self.number and self.number not in self.unlearned:
+            episode.verdict = Verdict.DISCARD
 
     def episode_unlearned(self, episode):
         self.unlearned.append(episode.number)
@@ -72,6 +73,22 @@ def test_the_first_can_be_discarded():
     discard = Discard(1)
     assert taught('coached', discard).episode == 3
     assert discard.taught == [1, 1, 2, 3]
+
+
+def test_who_discards_it_and_stops_at_once_means_both():
+    class Stopped(Discard):
+        def episode_learned(self, episode, figures):
+            super().episode_learned(episode, figures)
+            if episode.verdict:
+                raise KeyboardInterrupt
+
+    stopped, learner = Stopped(2), preset('coached').make(3)
+    task = replace(learner.task, episode_seconds=SECONDS)
+    env = SharedControlEnv(LocalPlant(task, make_tutor(profile('expert'), task, 3)), task)
+    with pytest.raises(KeyboardInterrupt):
+        learn(learner, env, 3, stopped)
+    env.close()
+    assert learner.episode == 1 and stopped.unlearned == [2]
 
 
 def episode(number, verdict=Verdict.NONE):

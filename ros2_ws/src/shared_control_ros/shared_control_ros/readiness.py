@@ -21,7 +21,7 @@ READY_FD = 'SHARED_CONTROL_READY_FD'
 """Environment variable: number of the file descriptor to write to. Who starts a node alone need not set it."""
 READY = b'ready\n'
 DONE = b'done\n'
-"""Nothing is left to do but to take leave of the middleware."""
+"""By itself, with nothing left to do but to take leave of the middleware."""
 
 
 class ReadyPipe:

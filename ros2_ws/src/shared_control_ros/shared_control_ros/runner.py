@@ -94,7 +94,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     finally:
         if runnable is not None:
             runnable.close()
-            if code == 0:
+            if code == 0 and not stop.requested:
                 pipe.tell(DONE)
             leave_within(LEAVE_SECONDS)
             runnable.node.destroy_node()
