@@ -49,6 +49,7 @@ from shared_control_learning.warm_up import warm_up
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
+from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import ParameterError, declare
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
@@ -77,6 +78,7 @@ class PpoAgentNode(Callbacks):
 
     def __init__(self) -> None:
         self.node = node = Node('ppo_agent_node')
+        self._role = claim(node, 'learner')
         robot = declare_robot(node)
         mode = declare(
             node, 'mode', 'teach', 'teach: learn, then test. test: only test a policy.', choices=('teach', 'test'))

@@ -18,10 +18,18 @@ import json
 import shlex
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 
+from shared_control.control.computed_torque import ComputedTorqueController
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
+from shared_control.plugins import WORLDS, load
+from shared_control.rates import CONTROL_PERIOD
+from shared_control.robot.model import RobotModel
 from shared_control.robot.spec_file import load_robot
+from shared_control.robot.tray import carrying
+from shared_control.scene import Ball
+from shared_control.tasks.task import Task
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import as_tested, evaluate
@@ -67,13 +75,25 @@ def test_policy(folder: SessionFolder, episodes: int, physics: str, attend: Call
     tell_page(folder, 'testing', tested=0, of=episodes)
     tested = sha256(folder.policy)
     learner = load_policy(folder.policy)
-    robot = load_robot(folder.ros_parameters('panda_sim_node').get('robot', 'panda'))
-    env = SharedControlEnv(LocalPlant(learner.task, physics=physics, robot=robot), as_tested(learner.task))
+    env = SharedControlEnv(plant_of(folder, learner.task, physics), as_tested(learner.task))
     try:
         save_test(evaluate(learner.act, env, episodes, callbacks=_Progress(folder, episodes, attend)), folder.test,
                   tested)
     finally:
         env.close()
+
+
+def plant_of(folder: SessionFolder, task: Task, physics: str) -> LocalPlant:
+    """The world and the controller that the session's parameters make of a task, in this process, with nobody."""
+    simulator, controller = folder.ros_parameters('panda_sim_node'), folder.ros_parameters('torque_ctrl_node')
+    ball = Ball(mass=simulator.get('ball_mass', Ball.mass), radius=simulator.get('ball_radius', Ball.radius))
+    robot = load_robot(simulator.get('robot', 'panda'))
+    world = load(WORLDS, physics)(replace(task.scene, ball=ball), CONTROL_PERIOD, carrying(robot, task.scene))
+    plant = LocalPlant(task, robot=robot, world=world)
+    plant.controller = ComputedTorqueController(
+        RobotModel(plant.spec), task.axes, gains=controller.get('gains', 'task'), dt=CONTROL_PERIOD,
+        horizon=controller.get('prediction_horizon'))
+    return plant
 
 
 def describe_policy(folder: SessionFolder) -> None:

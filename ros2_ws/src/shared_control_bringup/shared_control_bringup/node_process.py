@@ -119,14 +119,14 @@ class NodeProcess:
         for a group of processes, autogroup, goes wrong where they cannot change cores).
         """
         leave_with_the_parent()
-        *others, last = sorted(os.sched_getaffinity(0))
+        loop, others = _cores()
         if not others:
             if not self._in_control_loop:
                 os.nice(NICENESS)
         elif not self._in_real_time:
             return
         elif self._in_control_loop:
-            os.sched_setaffinity(0, {last})
+            os.sched_setaffinity(0, {loop})
             with suppress(PermissionError):
                 os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(REAL_TIME_PRIORITY))
         elif self._starts_confined:
@@ -134,7 +134,7 @@ class NodeProcess:
 
     def confine(self) -> None:
         """Leave the core of the control loop to it from now on."""
-        *others, _ = sorted(os.sched_getaffinity(0))
+        _, others = _cores()
         if not self._in_real_time or self._in_control_loop or not others or self.exit_code() is not None:
             return
         confined: set[str] = set()
@@ -213,7 +213,7 @@ class NodeProcess:
         self._is_starting = False
 
     def newest_warning(self) -> tuple[float, str] | None:
-        """The newest warning or error in the end of its log, of this start: when, s of the time of the day, and text."""
+        """The newest warning or error since its start, if not long ago: when, s of the time of the day, and text."""
         try:
             with self.log.open('rb') as log:
                 log.seek(max(self.log.stat().st_size - LOG_END, self._log_begins))
@@ -228,3 +228,14 @@ class NodeProcess:
         lines = [line.strip() for line in text.splitlines() if line.strip()]
         errors = [line for line in lines if 'error' in line.lower()]
         return (errors or lines or ['no output'])[-1]
+
+
+def _cores() -> tuple[int, list[int]]:
+    """The core of the control loop, and the others: the last, and for each further ROS domain the one before it.
+
+    Sessions run side by side in domains of their own, and one core has no room for two loops at 1 kHz.
+    """
+    cores = sorted(os.sched_getaffinity(0))
+    domain = os.environ.get('ROS_DOMAIN_ID', '').strip()
+    loop = cores.pop(-1 - (int(domain) if domain.isdecimal() else 0) % len(cores))
+    return loop, cores

@@ -23,7 +23,7 @@ from shared_control.robot.spec_file import is_path, load_robot
 from shared_control_ros.declarations import Declaration, declarations
 
 from .graph import ALL_NODES
-from .parameters import ANY_NODE
+from .parameters import ANY_NODE, DEFAULTS, read
 
 OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides', 'qos_overrides.*')
 """Parameters that every node has of rclpy, as patterns."""
@@ -55,6 +55,28 @@ def check_values(given: dict[str, dict[str, Any]], path: Path) -> None:
             for declaration in meant:
                 if problem := _problem(declaration, value) or (_robot_problem(value) if name == 'robot' else ''):
                     raise ValueError(f'{path}: parameter {name!r} of {node} {problem}')
+
+
+def refuse_overridden(given: dict[str, dict[str, Any]], taken: dict[str, dict[str, Any]], path: Path) -> None:
+    """Refuse values in a file that a session would not go by. Those of the defaults may stand in it: it may be a copy.
+
+    Args:
+        given: see :func:`.parameters.read`.
+        taken: see :func:`.graph.overrides`.
+        path: that messages name.
+
+    Raises:
+        ValueError: the session has another value for a parameter; the message names all.
+    """
+    defaults = read(DEFAULTS.read_bytes(), DEFAULTS)
+    for node, values in taken.items():
+        wanted = {**given.get(ANY_NODE, {}), **given.get(node, {})}
+        for name in values.keys() & wanted.keys():
+            if wanted[name] not in (values[name], defaults.get(node, {}).get(name)):
+                raise ValueError(
+                    f'{path}: parameter {name!r} of {node} is {wanted[name]!r}, but a session gives it '
+                    f'{values[name]!r}, by its task and its options (shared-control session --help): use these, and '
+                    'leave it out')
 
 
 def _problem(declaration: Declaration, value: Any) -> str:

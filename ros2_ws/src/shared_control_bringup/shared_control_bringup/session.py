@@ -18,6 +18,7 @@ import argparse
 import os
 import sys
 import time
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -36,10 +37,11 @@ from .neighbours import Neighbours
 from .node_process import NodeProcess
 from .options import given_settings, refuse_options_of_new_sessions
 from .page import Page
-from .parameter_check import check_values
+from .parameter_check import check_values, refuse_overridden
 from .settings import EPISODES_OF_SIMULATED, Settings
 from .supervisor import STOP_SECONDS
 from .teaching import POLL_SECONDS, End, teach
+from .terminal import restored_terminal
 
 PAGE_SECONDS = 600.0
 """How long the page stays for a person who has left it open, s."""
@@ -72,8 +74,10 @@ def run(args: argparse.Namespace) -> int:
     with Neighbours() as neighbours:
         page = Page.choose(settings, parameters)
         served = settings if page is None else replace(settings, page=(page.host, page.port))
-        parameters = ros_parameters.lay_over(parameters, overrides(
-            served, path.expanduser().absolute(), shows_screen))
+        taken = overrides(served, path.expanduser().absolute(), shows_screen)
+        if earlier is None:
+            refuse_overridden(given, taken, params_file)
+        parameters = ros_parameters.lay_over(parameters, taken)
         neighbours.refuse()
 
     # Nothing is left to be refused but the folder itself.
@@ -87,9 +91,13 @@ def run(args: argparse.Namespace) -> int:
         ros_parameters.save(parameters, folder.parameters)
         print('The session begins.' if settings.blind else
               f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)
-        end, restarts, page_node = _teach(settings, folder, shows_screen, page, interrupts)
+        earlier_restarts = _earlier_restarts(folder)
+        folder.write_settings(replace(settings, taught=False).to_json())
+        folder.ending.unlink(missing_ok=True)
+        with restored_terminal() if shows_screen else nullcontext():
+            end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts, settings.blind)
         try:
-            end = _report(folder, end, restarts, settings, interrupts)
+            end = _conclude(folder, end, restarts + earlier_restarts, settings, interrupts)
             if end is End.DONE and page is not None and page_node is not None:
                 _keep_open(page, page_node, interrupts)
         finally:
@@ -115,7 +123,7 @@ def _test_only(settings: Settings, folder: SessionFolder) -> int:
         folder.write_settings(settings.to_json())
         place = '' if settings.blind else f'Session in {folder.path}: '
         print(f'{place}the teaching is over, the robot is tested.', flush=True)
-        return _report(folder, End.DONE, _earlier_restarts(folder), settings, interrupts).value
+        return _conclude(folder, End.DONE, _earlier_restarts(folder), settings, interrupts).value
 
 
 def _new_settings(args: argparse.Namespace) -> Settings:
@@ -153,20 +161,6 @@ def _is_taught(settings: Settings, folder: SessionFolder, given: dict[str, Any])
         set(given) <= {'test_episodes'} if given else not folder.test.exists())
 
 
-def _teach(settings: Settings, folder: SessionFolder, shows_screen: bool, page: Page | None,
-           interrupts: Interrupts) -> tuple[End, int, NodeProcess | None]:
-    """Teach, and keep in the folder whether that came to its end; see :func:`.teaching.teach`, restarts in all."""
-    earlier_restarts = _earlier_restarts(folder)
-    folder.write_settings(replace(settings, taught=False).to_json())
-    folder.ending.unlink(missing_ok=True)
-    end, restarts, page_node = teach(folder, settings.tutor, shows_screen, page, interrupts, settings.blind)
-    test = load_test(folder.test)
-    if test is not None and folder.policy.exists() and test.policy != sha256(folder.policy):
-        folder.test.unlink()  # the policy has learned since
-    folder.write_settings(replace(settings, taught=end is End.DONE).to_json())
-    return end, restarts + earlier_restarts, page_node
-
-
 def _earlier_restarts(folder: SessionFolder) -> int:
     """Restarts of nodes in the part of the session that was reported before.
 
@@ -178,33 +172,46 @@ def _earlier_restarts(folder: SessionFolder) -> int:
     return earlier_restarts(folder) or 0
 
 
+def _conclude(folder: SessionFolder, end: End, restarts: int, settings: Settings, interrupts: Interrupts) -> End:
+    """Keep whether the teaching came to its end, test and report, and say how to go on; how the session ended."""
+    try:
+        test = load_test(folder.test)
+        if test is not None and folder.policy.exists() and test.policy != sha256(folder.policy):
+            folder.test.unlink()  # the policy has learned since
+        folder.write_settings(replace(settings, taught=end is End.DONE).to_json())
+        end = _report(folder, end, restarts, settings, interrupts)
+    except OSError as error:
+        print(f'shared-control: {error}; what there is of the session is kept in {folder.path}', file=sys.stderr)
+        end = End.FAILED
+    finally:
+        if end is not End.DONE:
+            print('Stopped before the end.' if settings.blind else
+                  f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)
+    return end
+
+
 def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, interrupts: Interrupts) -> End:
     """Test the policy, complete the bag, write the report, and print what came of it; how the session ended."""
     # Imported late: torch and matplotlib take seconds, and the person wants to begin.
     from shared_control_records.session.report import write_report
 
     from .aftermath import describe_policy, tell_page, tell_summary, test_policy
-    try:
-        if end is not End.FAILED:
-            describe_policy(folder)
-        if not folder.policy.exists():
-            print('No episode was learned: there is no policy.', flush=True)
-        elif end is End.DONE and settings.test_episodes:
-            try:
-                test_policy(folder, settings.test_episodes, settings.physics, interrupts.check)
-            except KeyboardInterrupt:
-                end = End.STOPPED
-        tell_page(folder, 'reporting')
-        print('Writing the report ...', flush=True)
-        _complete_bag(folder, restarts)
-        summary = write_report(folder, restarts)
-        if not settings.blind:
-            tell_summary(folder, summary)
-        tell_page(folder, 'over', of=summary.autonomous_episodes, successes=summary.autonomous_success)
-    finally:
-        if end is not End.DONE:
-            print('Stopped before the end.' if settings.blind else
-                  f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)
+    if end is not End.FAILED:
+        describe_policy(folder)
+    if not folder.policy.exists():
+        print('No episode was learned: there is no policy.', flush=True)
+    elif end is End.DONE and settings.test_episodes:
+        try:
+            test_policy(folder, settings.test_episodes, settings.physics, interrupts.check)
+        except KeyboardInterrupt:
+            end = End.STOPPED
+    tell_page(folder, 'reporting')
+    print('Writing the report ...', flush=True)
+    _complete_bag(folder, restarts)
+    summary = write_report(folder, restarts)
+    if not settings.blind:
+        tell_summary(folder, summary)
+    tell_page(folder, 'over', of=summary.autonomous_episodes, successes=summary.autonomous_success)
     return end
 
 

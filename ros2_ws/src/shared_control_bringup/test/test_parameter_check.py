@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from shared_control_bringup.parameter_check import check_values
+from shared_control_bringup.parameter_check import check_values, refuse_overridden
 from shared_control_bringup.parameters import DEFAULTS, read
 
 PATH = Path('mine.yaml')
@@ -71,3 +71,15 @@ def test_other_values_are_taken(node, values):
 
 def test_our_own_file_is_taken():
     check_values(read(DEFAULTS.read_bytes(), DEFAULTS), DEFAULTS)
+
+
+def test_what_a_session_decides_otherwise_is_refused_by_name():
+    taken = {'torque_ctrl_node': {'moment_limit': 20.0, 'enabled': True}, 'ppo_agent_node': {'seed': 3, 'episodes': 0}}
+    for given, said in (
+            ({'torque_ctrl_node': {'moment_limit': 5.0}}, "'moment_limit' of torque_ctrl_node is 5.0, but .* 20.0"),
+            ({'torque_ctrl_node': {'enabled': False}}, "'enabled' of torque_ctrl_node is False"),
+            ({'/**': {'seed': 7}}, "'seed' of ppo_agent_node is 7, but a session gives it 3")):
+        with pytest.raises(ValueError, match=said):
+            refuse_overridden(given, taken, PATH)
+    refuse_overridden({'ppo_agent_node': {'seed': 3, 'test_episodes': 9}}, taken, PATH)
+    refuse_overridden(read(DEFAULTS.read_bytes(), DEFAULTS), {'panda_sim_node': {'seed': 5}}, PATH)

@@ -14,6 +14,7 @@
 
 """What ``shared-control session`` checks, writes and removes before and beside the graph, which is left out here."""
 
+import errno
 import json
 import os
 import shutil
@@ -283,9 +284,20 @@ def test_a_session_in_which_nothing_was_learned_has_a_report(tmp_path, capsys):
     folder = SessionFolder(tmp_path / 'session')
     record([lesson()]).write(folder.bag)
     folder.write_settings((settings := Settings(tutor='sim', test_episodes=20)).to_json())
-    assert command._report(folder, End.DONE, 0, settings, Interrupts()) is End.DONE
+    assert command._conclude(folder, End.DONE, 0, settings, Interrupts()) is End.DONE
     assert 'No episode was learned' in capsys.readouterr().out
     assert folder.report.exists() and not folder.test.exists()
+
+
+def test_a_disk_that_is_full_after_the_teaching_is_said_with_the_way_to_go_on(session, tmp_path, monkeypatch, capsys):
+    def full(*_):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    monkeypatch.setattr(command, '_report', full)
+    assert session('--tutor', 'sim', '--output', tmp_path / 'session') == 1
+    said = capsys.readouterr()
+    assert f'No space left on device; what there is of the session is kept in {tmp_path / "session"}' in said.err
+    assert f'--resume {tmp_path / "session"}' in said.out
 
 
 def test_a_test_does_not_outlive_the_policy_that_it_was_of(session, tmp_path):

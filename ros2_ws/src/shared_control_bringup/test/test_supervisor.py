@@ -206,6 +206,19 @@ time.sleep(60)
         time.sleep(0.05)
 
 
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason='one core: there is no choice')
+def test_paced_loops_of_two_domains_have_two_cores(make_node, monkeypatch):
+    cores = []
+    for domain in ('0', '1'):
+        monkeypatch.setenv('ROS_DOMAIN_ID', domain)
+        node = make_node('torque_ctrl_node', in_control_loop=True, in_real_time=True)
+        node.start()
+        cores.append(os.sched_getaffinity(node.pid))
+        node.kill()
+        node.wait(60.0)
+    assert cores == [{core} for core in sorted(os.sched_getaffinity(0))[:-3:-1]]
+
+
 def test_in_real_time_the_loop_runs_before_the_threads_of_the_middleware(make_node):
     """At one priority on one core, a thread of Fast DDS that spins on a lock can keep its holder from running."""
     try:

@@ -26,7 +26,7 @@ from .held_back_output import HeldBackOutput
 
 # Alternate screen, cursor hidden, no wrapping at the right margin; and back.
 _ENTER = b'\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[2J'
-_LEAVE = b'\x1b[?2026l\x1b[0m\x1b[?7h\x1b[?25h\x1b[?1049l'
+LEAVE = b'\x1b[?2026l\x1b[0m\x1b[?7h\x1b[?25h\x1b[?1049l'
 # Terminals that know synchronized output (DEC mode 2026) show a frame at once; the others ignore it.
 _BEGIN_FRAME, _END_FRAME = '\x1b[?2026h', '\x1b[?2026l'
 _REPAINT_AFTER = 2.0
@@ -181,7 +181,7 @@ class Terminal:
         # From the background, restoring would stop this process instead.
         ttou = signal.signal(signal.SIGTTOU, signal.SIG_IGN)
         try:
-            self._pending += f'\x1b[{self.size[1]};1H'.encode() + _LEAVE
+            self._pending += f'\x1b[{self.size[1]};1H'.encode() + LEAVE
             while not self._flush() and time.monotonic() < deadline:
                 select.select([], [self._fd], [], 0.02)
             termios.tcflush(self._fd, termios.TCIFLUSH)

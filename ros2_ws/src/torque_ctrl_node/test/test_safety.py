@@ -14,6 +14,7 @@
 
 """What holds across the controller's end, and what it does when it leaves."""
 
+import os
 import signal
 import time
 
@@ -176,6 +177,21 @@ class TestStopRecord:
         (self.path / 'home').write_text('a file')
         StopRecord(3, '/').keep()
         assert StopRecord(3, '/').is_on() and list(self.path.glob('temporary/*'))
+
+    def test_the_loop_waits_for_no_disk(self, monkeypatch):
+        monkeypatch.setattr(os, 'fsync', lambda _: pytest.fail('it waits'))
+        StopRecord(3, '/').keep()
+        assert StopRecord(3, '/').is_on()
+
+    @pytest.mark.skipif(os.getuid() != 0, reason='root alone can become another user')
+    def test_a_folder_that_may_not_be_entered_holds_no_stop(self):
+        (self.path / 'home').mkdir(mode=0o700)
+        self.path.chmod(0o755)
+        os.seteuid(65534)
+        try:
+            assert not StopRecord(3, '/').is_on()
+        finally:
+            os.seteuid(0)
 
     def test_a_damaged_record_is_one_of_a_stop(self):
         StopRecord(3, '/').keep()

@@ -77,13 +77,15 @@ class StopRecord:
         raise problem
 
     def _kept(self) -> Iterator[tuple[Path, dict[str, str | bool]]]:
-        for path in [folder / self._name for folder in _folders()]:
+        # What may not be entered holds no record: the unreadable one that means a stop is a file.
+        for path in [folder / self._name for folder in _folders() if os.access(folder, os.X_OK, effective_ids=True)]:
             with suppress(FileNotFoundError, NotADirectoryError):
                 yield path, _read(path)
 
 
 def _write(path: Path, left: bool) -> None:
-    write_atomically(path, json.dumps({'left': left, 'starter': starter()}).encode())
+    # Not synced: the control loop writes it, which must not wait for a disk, and it is to outlive the process alone.
+    write_atomically(path, json.dumps({'left': left, 'starter': starter()}).encode(), synced=False)
 
 
 def _read(path: Path) -> dict[str, str | bool]:
