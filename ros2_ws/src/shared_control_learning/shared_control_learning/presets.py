@@ -72,7 +72,7 @@ class PpoPreset(Preset):
 
 @dataclass(frozen=True)
 class GuidedPreset(Preset):
-    """PPO, a model of what all moments did, and corrections that are judged by it."""
+    """PPO, and a model of what all moments did, in which the policy is improved."""
 
     settings: GuidedSettings
 
