@@ -129,7 +129,7 @@ def train(preset: Preset, tutor: Who | None, seed: int, episodes: int, *, until_
 
     Raises:
         TrainingError: ``folder`` holds another run, or one whose policy is missing.
-        PolicyFileError: ``folder`` holds an unusable policy.
+        PolicyFileError: ``folder`` holds an unusable policy, or what was learned is too large for one.
         ValueError: it cannot be done (:func:`new_learner`).
     """
     learner = new_learner(preset, tutor, seed, physics, sharing)
@@ -196,21 +196,26 @@ def _resumed(learner: Learner, run: TrainingRun, folder: Path) -> tuple[Learner,
         return learner, run
     stored = read_run(folder)
     for name in ('preset', 'tutor', 'seed', 'human_only', 'physics', 'sharing'):
-        if getattr(stored, name) != getattr(run, name):
-            raise TrainingError(f'{folder} holds a run with {name} {getattr(stored, name)!r}, asked for '
-                                f'{getattr(run, name)!r}: ask for the same, or name another folder')
+        _check_same(folder, name, getattr(stored, name), getattr(run, name))
     if not policy.exists():
         if stored.episodes > 1:  # the first is written down a moment before its policy is, and can be taught again
             raise TrainingError(f'{policy} is missing, though {folder / RUN_NAME} has {stored.episodes} episodes: put '
                                 'it back, or begin anew in another folder or by --overwrite')
         return learner, run
-    learner = load_policy(policy)
+    asked, learner = learner, load_policy(policy)
+    _check_same(folder, 'task', learner.task.name, asked.task.name)
     # The policy is written last: an episode that it has not learned from is taught anew.
     stored.tests = [test for test in stored.tests if test[0] <= learner.episode]
     for figures in (stored.returns, stored.intervention_rates, stored.presses, stored.interventions,
                     stored.noise_shares):
         del figures[learner.episode:]
     return learner, stored
+
+
+def _check_same(folder: Path, what: str, stored: object, asked: object) -> None:
+    if stored != asked:
+        raise TrainingError(f'{folder} holds a run with {what} {stored!r}, asked for {asked!r}: ask for the same, or '
+                            'name another folder')
 
 
 def _write_run(run: TrainingRun, folder: Path) -> None:

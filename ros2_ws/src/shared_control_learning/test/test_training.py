@@ -25,7 +25,7 @@ from shared_control.teaching.profiles import profile
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode_table import read_rows
 from shared_control_learning.policy_file import POLICY_NAME, load_policy
-from shared_control_learning.presets import preset
+from shared_control_learning.presets import preset, preset_for
 from shared_control_learning.training import TrainingError, TrainingRun, read_run, train
 
 SHORT = replace(preset('coached'), task=replace(preset('coached').task, episode_seconds=2.0))
@@ -75,6 +75,15 @@ def test_another_run_is_not_mixed_in(tmp_path):
         train(SHORT, None, 6, 2, folder=tmp_path, evaluate_every=0)
     with pytest.raises(TrainingError, match="physics 'bullet', asked for 'mujoco'"):
         train(SHORT, None, 5, 2, folder=tmp_path, evaluate_every=0, physics='mujoco')
+
+
+@pytest.mark.parametrize('other', ['detour', 'balance'])
+def test_another_task_is_not_mixed_in(other, tmp_path):
+    train(preset_for('plate', 'coached'), None, 5, 1, folder=tmp_path, evaluate_every=0)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    with pytest.raises(TrainingError, match=f"{tmp_path} holds a run with task 'plate', asked for '{other}': ask for"):
+        train(preset_for(other, 'coached'), None, 5, 2, folder=tmp_path, evaluate_every=0)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_run_keeps_its_physics_and_goes_on_in_it(tmp_path, monkeypatch, capsys):
