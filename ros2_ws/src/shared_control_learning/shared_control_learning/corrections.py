@@ -22,6 +22,7 @@ from shared_control.rates import POLICY_PERIOD
 from shared_control.tasks.task import Task
 
 from .episode import Episode
+from .learner import ROWS_MAX
 from .settings import CoachingSettings
 
 
@@ -51,8 +52,9 @@ class Corrections:
         return len(self.labels)
 
     def followed_by(self, later: 'Corrections') -> 'Corrections':
-        """These and ``later`` ones."""
-        return Corrections(*(torch.cat([getattr(self, f.name), getattr(later, f.name)]) for f in fields(self)))
+        """These and ``later`` ones; the last :data:`~.learner.ROWS_MAX`, since no more are read from a file."""
+        return Corrections(*(
+            torch.cat([getattr(self, f.name), getattr(later, f.name)])[-ROWS_MAX:] for f in fields(self)))
 
     def since(self, episode: int) -> 'Corrections':
         """Those of ``episode`` and later ones."""

@@ -25,6 +25,7 @@ import torch
 from shared_control.tasks.task import Task
 
 from .episode import Episode
+from .memory import Memory
 
 ROUNDS = 8
 """Rounds of reweighting; the weights have settled by then."""
@@ -56,9 +57,8 @@ class Transitions:
         self._task, self._episodes = task, episodes
         self.size = task.observation_size
         axes = len(task.axes)
-        self._columns = {
-            'states': 2 * self.size + axes, 'moments': axes, 'next': self.size, 'rewards': 1, 'episodes': 1}
-        self._rows = {name: np.zeros((0, columns), np.float32) for name, columns in self._columns.items()}
+        self._memory = Memory('transitions.', states=2 * self.size + axes, moments=axes, next=self.size, rewards=1,
+                              episodes=1)
 
     def add(self, episode: Episode, number: int) -> None:
         """Remember an episode, number ``number`` (from 1)."""
@@ -67,16 +67,14 @@ class Transitions:
         moments = episode.applied_actions
         change = np.diff(seen, axis=0, prepend=seen[:1])
         before = np.concatenate([np.zeros_like(moments[:1]), moments[:-1]])
-        rows = {'states': np.concatenate([seen[:-1], change[:-1], before], axis=1), 'moments': moments,
-                'next': seen[1:], 'rewards': np.array(episode.rewards)[:, np.newaxis],
-                'episodes': np.full((len(moments), 1), number)}
-        self._rows = {name: np.concatenate([self._rows[name], rows[name].astype(np.float32)]) for name in self._rows}
-        kept = self._rows['episodes'][:, 0] > number - self._episodes
-        self._rows = {name: values[kept] for name, values in self._rows.items()}
+        self._memory.add(
+            states=np.concatenate([seen[:-1], change[:-1], before], axis=1), moments=moments, next=seen[1:],
+            rewards=np.array(episode.rewards)[:, np.newaxis], episodes=np.full((len(moments), 1), number))
+        self._memory.keep_last(int((self.episodes > number - self._episodes).sum()))
 
     def __getattr__(self, name: str) -> np.ndarray:
-        if name in self.__dict__.get('_rows', {}):
-            return self._rows[name]
+        if name in self.__dict__.get('_memory', ()):
+            return self._memory[name]
         raise AttributeError(name)
 
     @property
@@ -93,21 +91,11 @@ class Transitions:
 
     def tensors(self) -> dict[str, torch.Tensor]:
         """By name, for a policy file."""
-        return {f'transitions.{name}': torch.tensor(values) for name, values in self._rows.items()}
+        return self._memory.tensors()
 
     def restore(self, tensors: Mapping[str, torch.Tensor]) -> None:
-        """Become those that gave these tensors.
-
-        Raises:
-            ValueError: they are not of such transitions; the message names the one that is wrong.
-        """
-        rows = len(tensors['transitions.rewards'])
-        for name, columns in self._columns.items():
-            tensor = tensors[f'transitions.{name}']
-            if tensor.dtype != torch.float32 or tuple(tensor.shape) != (rows, columns):
-                raise ValueError(f'transitions.{name} is {tensor.dtype} {tuple(tensor.shape)}, expected '
-                                 f'{torch.float32} {(rows, columns)}')
-        self._rows = {name: tensors[f'transitions.{name}'].numpy().copy() for name in self._columns}
+        """Become those that gave these tensors, which :func:`.learner.check_tensors` has checked."""
+        self._memory.restore(tensors)
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from shared_control.tasks.task import INTEGRAL_BOUND, OBSERVATION_BOUND, Task
 
 from .dynamics import Dynamics, Transitions, fit_dynamics
 from .episode import Episode
+from .learner import check_tensors
 from .ppo_learner import PpoLearner
 from .settings import GuidedSettings
 
@@ -126,8 +127,8 @@ class GuidedLearner(PpoLearner):
 
     def restore(self, tensors: Mapping[str, torch.Tensor]) -> None:
         """See :class:`Learner`."""
-        own = self._known.tensors().keys()
-        if not own <= tensors.keys():
-            raise ValueError(f'it should hold the tensors {", ".join(sorted(own - tensors.keys()))}')
+        own = self._known.tensors()
+        known = {name: tensor for name, tensor in tensors.items() if name in own}
+        check_tensors(known, own, own.keys())
         super().restore({name: tensor for name, tensor in tensors.items() if name not in own})
-        self._known.restore(tensors)
+        self._known.restore(known)

@@ -67,7 +67,7 @@ class Learner(Protocol):
 
 
 ROWS_MAX = 100_000
-"""Most rows of what a learner remembers; an episode has 750."""
+"""Most rows of what a learner remembers, and of what is read of it from a file; an episode of 15 s has 750."""
 
 
 def check_tensors(tensors: 'Mapping[str, torch.Tensor]', like: 'Mapping[str, torch.Tensor]',
@@ -76,7 +76,7 @@ def check_tensors(tensors: 'Mapping[str, torch.Tensor]', like: 'Mapping[str, tor
 
     Args:
         like: the learner's.
-        growing: names of those that may have any number of rows, all the same.
+        growing: names of those that may have any number of rows up to :data:`ROWS_MAX`, all the same.
 
     Raises:
         ValueError: they are not; the message names one that is wrong.
@@ -86,10 +86,12 @@ def check_tensors(tensors: 'Mapping[str, torch.Tensor]', like: 'Mapping[str, tor
         raise ValueError(f'these tensors differ: {escaped(cut(others, ECHO_MAX))}; it should hold '
                          f'{", ".join(sorted(like))}')
     rows = min((len(tensors[name]) for name in growing if tensors[name].dim()), default=0)
+    if rows > ROWS_MAX:
+        raise ValueError(f'{", ".join(sorted(growing))} have {rows} rows, at most {ROWS_MAX} are read')
     for name, tensor in tensors.items():
         own = like[name]
         shape = (rows, *own.shape[1:]) if name in growing else tuple(own.shape)
-        if tuple(tensor.shape) != shape or tensor.dtype != own.dtype or rows > ROWS_MAX:
+        if tuple(tensor.shape) != shape or tensor.dtype != own.dtype:
             raise ValueError(f'{name} is {tensor.dtype} {tuple(tensor.shape)}, expected {own.dtype} {shape}')
 
 

@@ -71,12 +71,20 @@ class PolicyFileError(ValueError):
 
 
 def save_policy(learner: Learner, path: Path) -> None:
-    """Write ``learner`` to ``path``, as a whole or not at all."""
+    """Write ``learner`` to ``path``, as a whole or not at all.
+
+    Raises:
+        PolicyFileError: the file would be larger than one that is read; what was there stays.
+    """
     description = Description(
         format=FORMAT, preset=learner.name, task=learner.task.name, task_settings=dataclasses.asdict(learner.task),
         settings=dataclasses.asdict(learner.settings), seed=learner.seed, episode=learner.episode,
         **_spaces(learner.task))
-    write_atomically(path, save(learner.tensors(), {_KEY: description.model_dump_json()}))
+    content = save(learner.tensors(), {_KEY: description.model_dump_json()})
+    if len(content) > SIZE_MAX:
+        raise PolicyFileError(f'{path} was not written: it would take {len(content)} bytes, and at most {SIZE_MAX} are '
+                              'read; learn with smaller layers, or remember less')
+    write_atomically(path, content)
 
 
 def load_policy(path: Path) -> Learner:

@@ -106,10 +106,17 @@ def test_it_goes_on_as_if_it_had_never_stopped(tmp_path):
         assert torch.equal(tensor, stopped.tensors()[name]), name
 
 
-def test_tensors_of_another_shape_are_refused():
+@pytest.mark.parametrize(('edit', 'said'), [
+    (lambda t: t.update({'transitions.moments': torch.zeros(3, 2)}), r'^transitions\.moments is'),
+    (lambda t: t.pop('transitions.moments'), r'differ: transitions\.moments'),
+    (lambda t: t.update({name: torch.zeros(100_001, *tensor.shape[1:])
+                         for name, tensor in t.items() if name.startswith('transitions.')}), 'have 100001 rows'),
+])
+def test_transitions_that_are_not_its_own_are_refused(edit, said):
     learner = QUICK.make(1)
-    tensors = learner.tensors() | {'transitions.moments': torch.zeros(3, 2)}
-    with pytest.raises(ValueError, match=r'transitions\.moments'):
+    tensors = learner.tensors()
+    edit(tensors)
+    with pytest.raises(ValueError, match=said):
         learner.restore(tensors)
 
 

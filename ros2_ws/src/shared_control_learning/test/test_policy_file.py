@@ -21,6 +21,7 @@ import torch
 from safetensors.torch import load, save
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import LEARNERS, names
+from shared_control_learning import corrections, learner, memory, policy_file
 from shared_control_learning.learn import learn
 from shared_control_learning.policy_file import PolicyFileError, load_policy, read_description, save_policy
 from shared_control_learning.presets import COACHED, preset
@@ -52,6 +53,25 @@ def test_resuming_is_as_if_nothing_had_happened(path, name, fake_plant):
     assert is_same(resumed, first)
     learn(resumed, env, episodes=3)
     assert is_same(resumed, straight)
+
+
+@pytest.mark.parametrize('name', names(LEARNERS))
+def test_what_is_written_can_be_read_however_much_was_learned_from(path, name, fake_plant, monkeypatch):
+    for module in (learner, memory, corrections):
+        monkeypatch.setattr(module, 'ROWS_MAX', 200)
+    taught = preset(name).make(7)
+    learn(taught, SharedControlEnv(fake_plant(5.0, falls_at=150), preset(name).task), episodes=2)
+    save_policy(taught, path)
+    assert is_same(load_policy(path), taught)
+
+
+def test_a_file_that_would_be_too_large_to_be_read_is_not_written(path, monkeypatch):
+    save_policy(COACHED.make(), path)
+    before = path.read_bytes()
+    monkeypatch.setattr(policy_file, 'SIZE_MAX', len(before) - 1)
+    with pytest.raises(PolicyFileError, match=rf'{path} was not written: it would take {len(before)} bytes'):
+        save_policy(COACHED.make(), path)
+    assert path.read_bytes() == before
 
 
 def test_saves_over_an_older_file_and_leaves_nothing_else(path):
@@ -170,6 +190,9 @@ def test_names_of_tensors_are_told_short_and_harmless(path, edit):
     (lambda t: t.update(extra=torch.zeros(1)), 'differ: extra'),
     (lambda t: t.update({'policy.log_std': torch.zeros(2)}), r'policy.log_std is torch.float32 \(2,\)'),
     (lambda t: t.update({'policy.log_std': torch.zeros(1, dtype=torch.float64)}), 'float64'),
+    (lambda t: t.update({name: torch.zeros(100_001, *tensor.shape[1:])
+                         for name, tensor in t.items() if name.startswith('corrections.')}),
+     r'corrections\.episodes, .* have 100001 rows, at most 100000'),
 ])
 def test_wrong_tensors_are_refused(path, edit, reason):
     change(path, tensors=edit)

@@ -22,17 +22,17 @@ from shared_control.tasks.task import Task
 
 from ..episode import Episode
 from ..learner import check_tensors
+from ..memory import Memory
 from .linear import LinearLearner
-from .memory import Memory
 from .presets import CloningSettings
 
 
 class BehaviourCloning(LinearLearner):
-    """Least squares of what the person did on what was to see, over all steps (D. Pomerleau, ALVINN, NeurIPS 1988).
+    """Least squares of what the person did on what was to see (D. Pomerleau, ALVINN, NeurIPS 1988).
 
     While it is taught, the robot gives no moment: the person does the task alone, and shows so how it is done. The
     policy is linear, as those of ``coached`` and ``guided`` are, and fitted anew after every episode by ridge
-    regression.
+    regression. The steps that it is fitted to are the last that showed something (:class:`.memory.Memory`).
     """
 
     settings: CloningSettings

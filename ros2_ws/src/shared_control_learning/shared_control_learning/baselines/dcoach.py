@@ -23,7 +23,7 @@ from shared_control.tasks.task import Task
 
 from ..episode import Episode
 from ..learner import check_tensors
-from .memory import Memory
+from ..memory import Memory
 from .presets import DCoachSettings
 
 

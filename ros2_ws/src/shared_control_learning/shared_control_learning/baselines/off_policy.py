@@ -29,19 +29,19 @@ from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from ..episode import Episode
 from ..learner import check_tensors
+from ..memory import Memory
 from ..noise import CorrelatedNoise
 from ..optimizer_state import adam_tensors
 from ..ppo import Spaces
-from .memory import Memory
 from .presets import OffPolicySettings
 
 
 class OffPolicyLearner:
-    """A :class:`Learner` that replays all steps so far, half of every minibatch those in which the person intervened.
+    """A :class:`Learner` that replays the steps so far, half of every minibatch those in which the person intervened.
 
     Symmetric sampling, as RLPD (Ball et al., 2023) samples demonstrations. The action of a step is the moment that
     counted, whoever gave it, within what the policy can do (-1..1): after a person's it is theirs. All gradient steps
-    are done after the episode.
+    are done after the episode. The oldest steps are forgotten in the end (:class:`.memory.Memory`).
 
     Args:
         name: of the preset.
@@ -115,7 +115,7 @@ class OffPolicyLearner:
         return tensors
 
     def tensors(self) -> dict[str, torch.Tensor]:
-        """See :class:`Learner`: weights, Adam's moments, and all steps so far."""
+        """See :class:`Learner`: weights, Adam's moments, and the steps that it replays."""
         return {name: tensor.detach() for name, tensor in self._own().items()} | self.replay.memory.tensors()
 
     @torch.no_grad()
