@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 from learning import randomized_test
-from shared_control.command_line import script_parser
+from shared_control.command_line import script_parser, write_json
 from shared_control.plugins import TASKS, names
 from shared_control.tasks.task import settled
 from shared_control.teaching.profiles import EXPERT
@@ -36,7 +36,7 @@ def run(task: str, trained_in: str, seed: int, folder: Path) -> dict[str, Any]:
         training = train(preset_for(task), EXPERT, seed, EPISODES, physics=trained_in, folder=folder)
         result = {'skilled': training.skilled, 'seconds': training.seconds,
                   'tests': {physics: tested(folder, physics, seed) for physics in PHYSICS}}
-        done.write_text(json.dumps(result, indent=2) + '\n')
+        write_json(result, done)
     return dict(json.loads(done.read_text()))
 
 

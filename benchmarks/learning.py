@@ -3,7 +3,7 @@
 In process on the PyBullet plant. After every episode the policy is tested alone (20 episodes of 10 s, new starts each
 time); it is skilled at the second test in a row that it passes. Runs with the same seed share ball starts and first
 weights, so conditions are paired. The tutors are simulated, no people take part. A run that is stopped goes on when
-the command is given again.
+the command is given again, and one that fewer --episodes ended when more are asked for.
 
     python benchmarks/learning.py                              # all conditions but thesis-*, 24 seeds: hours
     python benchmarks/learning.py --conditions guided-reactive guided-crossover guided-blind    # families of tutors
@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 from scipy.stats import bootstrap
-from shared_control.command_line import script_parser
+from shared_control.command_line import script_parser, write_json
 from shared_control.env import SharedControlEnv
 from shared_control.files import write_atomically
 from shared_control.tasks.task import Task
@@ -76,25 +76,25 @@ BY_DEFAULT = [name for name in CONDITIONS if not name.startswith('thesis')]
 
 
 def run(name: str, seed: int, folder: Path, limit: int | None, retention: bool) -> dict[str, Any]:
-    """One run, and what became of its policy."""
-    done = folder / 'result.json'
-    if done.exists():
-        result = json.loads(done.read_text())
-    else:
-        result = taught(CONDITIONS[name], seed, folder, limit)
-        done.write_text(json.dumps(result, indent=2) + '\n')
+    """One run, and what became of its policy; one that was ended sooner by a smaller ``limit`` goes on."""
+    condition, done = CONDITIONS[name], folder / 'result.json'
+    episodes = min(condition.episodes, limit or condition.episodes)
+    result = json.loads(done.read_text()) if done.exists() else None
+    if result is None or (result['skilled'] is None and result['episodes'] < episodes):
+        result = taught(condition, seed, folder, episodes)
+        write_json(result, done)
     if retention and result['skilled'] is not None and 'retention' not in result:
         result['retention'] = retained(folder / POLICY_NAME, seed)
-        done.write_text(json.dumps(result, indent=2) + '\n')
+        write_json(result, done)
     return result
 
 
-def taught(condition: Condition, seed: int, folder: Path, limit: int | None) -> dict[str, Any]:
-    """Teach a policy and test it."""
+def taught(condition: Condition, seed: int, folder: Path, episodes: int) -> dict[str, Any]:
+    """Teach a policy for at most so many episodes, earlier ones included, and test it."""
     training = train(
         preset(condition.preset), None if condition.tutor is None else tutor_named(condition.tutor, seed), seed,
-        min(condition.episodes, limit or condition.episodes), human_only=condition.human_only, folder=folder,
-        evaluate_every=condition.evaluate_every, until_skilled=condition.until_skilled)
+        episodes, human_only=condition.human_only, folder=folder, evaluate_every=condition.evaluate_every,
+        until_skilled=condition.until_skilled)
     return {
         'seed': seed, 'skilled': training.skilled, 'first_pass': training.first_pass, 'episodes': training.episodes,
         'intervention_rates': training.intervention_rates, 'seconds': training.seconds,
@@ -108,10 +108,11 @@ def final_test(policy: Path, seed: int) -> dict[str, float]:
     return {'successes': test.successes, 'position_error': test.mean_position_error, 'velocity': test.mean_velocity}
 
 
-def randomized_test(act: Act, task: Task, seed: int, physics: str = 'bullet') -> Evaluation:
-    """The randomised test of ``act``, with the ball starts of ``seed``."""
+def randomized_test(act: Act, task: Task, seed: int, physics: str = 'bullet', callbacks: Callbacks | None = None,
+                    ) -> Evaluation:
+    """The randomised test of ``act``, with the ball starts of ``seed``; ``callbacks`` are called for its episodes."""
     env = SharedControlEnv(LocalPlant(task, physics=physics), as_tested(task))
-    test = evaluate(act, env, seed=seed)
+    test = evaluate(act, env, seed=seed, callbacks=callbacks)
     env.close()
     return test
 

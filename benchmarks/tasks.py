@@ -21,14 +21,14 @@ from typing import Any
 
 import numpy as np
 from learning import median_with_interval, randomized_test, shown
-from scipy.linalg import solve_discrete_are
-from shared_control.command_line import script_parser
+from shared_control.command_line import script_parser, write_json
 from shared_control.env import SharedControlEnv
 from shared_control.plugins import TASKS, load
 from shared_control.seeds import episode_seed
 from shared_control.tasks.task import Task, settled
 from shared_control.teaching.profiles import EXPERT
 from shared_control.teaching.tutors import Who, make_tutor
+from shared_control_learning.baselines.lqr import regulator
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_SEED, Act
@@ -82,13 +82,37 @@ def learned(preset: Preset, tutor: Who | None, seed: int, folder: Path, episodes
             **final_test(learner.act, learner.task, seed)}
 
 
-def final_test(act: Act, task: Task, seed: int) -> dict[str, Any]:
-    """What is kept of the randomised test of ``act``."""
-    test = randomized_test(act, task, TEST_SEED + seed)
+def final_test(act: Act, task: Task, seed: int, callbacks: Callbacks | None = None) -> dict[str, Any]:
+    """What is kept of the randomised test of ``act``; ``callbacks`` are called for its episodes."""
+    test = randomized_test(act, task, TEST_SEED + seed, callbacks=callbacks)
     return {'successes': test.successes, 'position_error': test.mean_position_error}
 
 
-def regulator(task: Task, seed: int, folder: Path) -> dict[str, Any]:
+class FittedRegulator(Callbacks):
+    """``u = moment - gain ([o, u_before] - rest)``; before an episode there was no moment.
+
+    Args:
+        gain: (k, n + k), of the observation and the action before.
+        rest: (n + k,), what rests at the goal.
+        moment: (k,), the action that keeps it there.
+    """
+
+    def __init__(self, gain: np.ndarray, rest: np.ndarray, moment: np.ndarray):
+        self._gain, self._rest, self._moment = gain, rest, moment
+        self._last = np.zeros_like(moment)
+
+    def episode_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        self._last = np.zeros_like(self._moment)
+
+    def act(self, observation: np.ndarray) -> np.ndarray:
+        """The action, (k,), at an observation, (n,)."""
+        state = np.concatenate((observation, self._last))
+        self._last = np.clip(self._moment - self._gain @ (state - self._rest), -1.0, 1.0)
+        return self._last
+
+
+def fitted_regulator(task: Task, seed: int, folder: Path) -> dict[str, Any]:
     """Least squares on one episode, and the LQR of what was found; the goal is a state of rest."""
     random = np.random.default_rng(seed)
     env = SharedControlEnv(LocalPlant(task), task)
@@ -120,16 +144,8 @@ def regulator(task: Task, seed: int, folder: Path) -> dict[str, Any]:
         rcond=None)
     rest, moment = np.concatenate((wanted, unknown[:n - fixed])), unknown[n - fixed:]
     weights = np.diag([1.0] * k + [0.3] * k + [0.01] * (n - fixed))
-    value = solve_discrete_are(a, b, weights, 0.1 * np.eye(k))
-    gain = np.linalg.solve(0.1 * np.eye(k) + b.T @ value @ b, b.T @ value @ a)
-    last = np.zeros(k)
-
-    def act(observation: np.ndarray) -> np.ndarray:
-        nonlocal last
-        last = np.clip(moment - gain @ (np.concatenate((observation, last)) - rest), -1.0, 1.0)
-        return last
-
-    return {'skilled': None, 'episodes': 1, **final_test(act, task, seed)}
+    fitted = FittedRegulator(regulator(a, b, weights, 0.1 * np.eye(k)), rest, moment)
+    return {'skilled': None, 'episodes': 1, **final_test(fitted.act, task, seed, fitted)}
 
 
 def human(task: Task, seed: int, folder: Path) -> dict[str, Any]:
@@ -144,7 +160,8 @@ def human(task: Task, seed: int, folder: Path) -> dict[str, Any]:
             'position_error': float(np.mean([settled(np.array(e.position_error)) for e in episodes]))}
 
 
-WAYS = {'taught': taught, 'coached': coached, 'nobody': nobody, 'alone': alone, 'LQR': regulator, 'human': human}
+WAYS = {'taught': taught, 'coached': coached, 'nobody': nobody, 'alone': alone, 'LQR': fitted_regulator,
+        'human': human}
 CONDITIONS = [f'{task}-{way}' for task in ('balance', 'plate', 'detour') for way in WAYS
               if task != 'detour' or way not in ('coached', 'nobody')]  # its preset learns from corrections
 
@@ -155,9 +172,8 @@ def run(name: str, seed: int, output: Path) -> dict[str, Any]:
     folder = output / name / f'{seed:03}'
     done = folder / 'result.json'
     if not done.exists():
-        folder.mkdir(parents=True, exist_ok=True)
         result = WAYS[way](load(TASKS, task)(), seed, folder)
-        done.write_text(json.dumps(result, indent=2) + '\n')
+        write_json(result, done)
     return dict(json.loads(done.read_text()))
 
 

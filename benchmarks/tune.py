@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from learning import randomized_test
-from shared_control.command_line import script_parser
+from shared_control.command_line import script_parser, write_json
 from shared_control.control.sharing import Sharing
 from shared_control.plugins import TASKS, load
 from shared_control.teaching.tutors import tutor_named
@@ -146,9 +146,9 @@ def run(candidate: Candidate, tutor: str | None, seed: int, episodes: int, teste
             candidate.preset, None if tutor is None else tutor_named(tutor, seed), seed, episodes, physics=PHYSICS,
             folder=folder, evaluate_every=tested_every, sharing=Sharing(candidate.sharing))
         test = randomized_test(load_policy(folder / POLICY_NAME).act, task, TEST_SEED + seed, PHYSICS)
-        done.write_text(json.dumps({
+        write_json({
             'skilled': training.skilled, 'tests_passed': sum(passed for _, passed in training.tests),
-            'successes': test.successes, 'position_error': test.mean_position_error}, indent=2) + '\n')
+            'successes': test.successes, 'position_error': test.mean_position_error}, done)
     return dict(json.loads(done.read_text()))
 
 

@@ -121,7 +121,7 @@ def prose(json_path: Path | None) -> TextIO:
 
 
 def write_json(content: Any, path: Path | None) -> None:
-    """Write what ``--json`` asks for, if it does.
+    """Write JSON as a whole or not at all: what ``--json`` asks for, if it does, or what a script found.
 
     Raises:
         OSError: the file cannot be written.
