@@ -41,7 +41,8 @@ class Neighbours:
     """The look, begun when this is made and over when it is left. :meth:`refuse` waits for what it finds."""
 
     def __init__(self) -> None:
-        from shared_control_ros.processes import leave_with_the_parent, node_environment
+        from shared_control.processes import leave_with_the_parent
+        from shared_control_ros.processes import node_environment
         domain = os.environ.get('ROS_DOMAIN_ID', '').strip() or '0'
         if not domain.isdecimal() or int(domain) not in DOMAINS:
             raise ValueError(f'ROS_DOMAIN_ID is {domain!r}: it must be a number from 0 to {DOMAINS[-1]}')

@@ -26,7 +26,8 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from shared_control_ros.processes import leave_with_the_parent, node_environment, node_module
+from shared_control.processes import leave_with_the_parent
+from shared_control_ros.processes import node_environment, node_module
 from shared_control_ros.readiness import DONE, READY, READY_FD
 
 REAL_TIME_PRIORITY = 49

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Processes of nodes: their environment, and that they do not outlive the one that started them."""
+"""Processes of nodes: the module that each is, and their environment."""
 
 import os
 import sys
@@ -20,10 +20,6 @@ import sysconfig
 from importlib.machinery import PathFinder
 from importlib.metadata import entry_points
 from pathlib import Path
-
-from shared_control.processes import leave_with_the_parent
-
-__all__ = ['adopt_node_environment', 'leave_with_the_parent', 'node_environment', 'node_module']
 
 DDS_PROFILE = Path(__file__).parent / 'config' / 'this_machine.xml'
 _DDS_DECISIONS = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')

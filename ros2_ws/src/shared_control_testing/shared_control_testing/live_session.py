@@ -21,7 +21,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from shared_control_ros.processes import leave_with_the_parent, node_module
+from shared_control.processes import leave_with_the_parent
+from shared_control_ros.processes import node_module
 
 COMMAND = [sys.executable, '-m', 'shared_control', 'session']
 

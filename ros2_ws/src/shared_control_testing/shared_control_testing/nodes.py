@@ -35,9 +35,10 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from shared_control.processes import leave_with_the_parent
 from shared_control_ros.contract import Topic
 from shared_control_ros.fast_loop import Polled
-from shared_control_ros.processes import leave_with_the_parent, node_environment, node_module
+from shared_control_ros.processes import node_environment, node_module
 
 __all__ = ['domain_id', 'observer', 'start_node']
 

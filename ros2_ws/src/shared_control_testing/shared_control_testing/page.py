@@ -28,7 +28,7 @@ from typing import Any
 
 from selenium.webdriver import ActionChains, Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
-from shared_control_ros.processes import leave_with_the_parent
+from shared_control.processes import leave_with_the_parent
 
 SIZES = ((1920, 1080), (1366, 768), (844, 390), (683, 384), (390, 844))
 """Windows, CSS pixels: two screens, a phone held sideways, 1366 x 768 at 200 %, a phone."""

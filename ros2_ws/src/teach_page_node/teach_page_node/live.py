@@ -73,7 +73,6 @@ class LiveDesk:
         self._judge = Judge(node, self._tell)
         self._background = Background(node)
         self._notice_until = 0.0
-        self._paused_stamp_ns = 0
 
     def look(self) -> Picture:
         """See :class:`Desk`."""
@@ -112,11 +111,8 @@ class LiveDesk:
                 self._history.clear()
         known, share = len(scene.returns), scene.human_share
         self._observer.update(scene)
-        if self._requests.paused and self._observer.stamp_ns > self._paused_stamp_ns + 500_000_000:
-            self._requests.paused = False  # somebody else let it go on
+        self._requests.follow(scene.phase, self._observer.stamp_ns)
         new = scene.returns[known:]
-        if scene.phase not in (None, 'teach', 'learn'):
-            self._requests.ending = False
         if scene.phase not in ('test', 'done'):
             for value in new:
                 self._history.add(value, share if len(new) == 1 else None)
@@ -167,7 +163,6 @@ class LiveDesk:
     def do(self, command: str, value: Any) -> None:
         """See :class:`Desk`."""
         if command == 'pause':
-            self._paused_stamp_ns = self._observer.stamp_ns
             self._requests.toggle_pause()
         elif command == 'repeat':
             if self._requests.paused:

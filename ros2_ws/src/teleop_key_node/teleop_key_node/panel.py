@@ -87,7 +87,6 @@ class Panel:
         self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit, keystroke=keystroke,
                             in_session=in_session, feedback=feedback, offers_verdicts=verdicts)
         self._restarts = 0
-        self._paused_stamp_ns = 0
         self._frame_period = 1.0 / frame_rate
         self._next_frame = 0.0
         self._unicode = speaks_unicode(characters)
@@ -127,7 +126,6 @@ class Panel:
         elif stroke is Stroke.FINISH:
             self._finish()
         elif stroke is Stroke.PAUSE:
-            self._paused_stamp_ns = self._observer.stamp_ns
             self.requests.toggle_pause()
         elif stroke in _VERDICTS and self._scene.offers_verdicts:
             self._judge.say(self._scene, _VERDICTS[stroke])
@@ -162,21 +160,14 @@ class Panel:
         scene.phase, scene.episode, scene.began_ns = lesson.phase, lesson.episode, lesson.began_ns
         self._observer.update(scene)
         self._judge.update(scene)
-        self._notice_resumption()
+        self.requests.follow(lesson.phase, self._observer.stamp_ns)
         scene.human = tuple(sources.moment.tolist())
-        if lesson.phase not in (None, 'teach', 'learn'):
-            self.requests.ending = False
         scene.ending = self.requests.ending
         scene.hand = 'you' if sources.last_pressed in ('', TERMINAL) else sources.last_pressed
         scene.paused = self.requests.paused
         if now > self._message_until:
             scene.message = ''
         self.terminal.paint(render(scene, *self.terminal.size, self._unicode))
-
-    def _notice_resumption(self) -> None:
-        """Somebody else may have let the simulator go on."""
-        if self.requests.paused and self._observer.stamp_ns > self._paused_stamp_ns + 500_000_000:
-            self.requests.paused = False
 
     def close(self) -> None:
         """Put the terminal back as it was."""

@@ -26,6 +26,8 @@ from .. import contract
 
 ANSWER_WITHIN = 3.0
 """s"""
+RUNS_AGAIN_NS = 500_000_000
+"""So far beyond its pause, simulation time has been let go on by somebody else; less may still have been under way."""
 HINT = 'is the learner (ppo_agent_node) running?'
 
 
@@ -45,6 +47,7 @@ class Requests:
         self._pending: dict[Future, tuple[Client, float]] = {}
         self.paused = False
         """Whether the simulator has been paused from here."""
+        self._stamp_ns = self._paused_ns = 0
         self.ending = False
         """Whether the teaching ends with this episode, because it was asked for here."""
 
@@ -74,12 +77,26 @@ class Requests:
     def toggle_pause(self) -> None:
         """Pause the simulator, or go on."""
         pause = not self.paused
+        self._paused_ns = self._stamp_ns
 
         def answered(response: SetBool.Response) -> None:
             if response.success:
                 self.paused = pause
             self._tell('' if response.success else f'Could not {"pause" if pause else "go on"}: {response.message}')
         self._call(self._pause, SetBool.Request(data=pause), answered, 'this robot cannot be paused.')
+
+    def follow(self, phase: str | None, stamp_ns: int) -> None:
+        """Bring up to date what still holds.
+
+        Args:
+            phase: of the lesson; None when it is not known.
+            stamp_ns: the newest simulation time.
+        """
+        self._stamp_ns = stamp_ns
+        if stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
+            self.paused = False
+        if phase not in (None, 'teach', 'learn'):
+            self.ending = False
 
     def expire(self) -> None:
         """Give up what was not answered in time."""

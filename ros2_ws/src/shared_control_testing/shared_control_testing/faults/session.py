@@ -26,8 +26,8 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+from shared_control.processes import leave_with_the_parent
 from shared_control_ros import contract
-from shared_control_ros.processes import leave_with_the_parent
 
 from ..live_session import Session
 from .graph import Graph
