@@ -23,8 +23,9 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from shared_control.processes import leave_with_the_parent
 from shared_control_ros import contract
-from shared_control_ros.processes import leave_with_the_parent, node_module
+from shared_control_ros.processes import node_module
 from shared_control_testing.nodes import free_domain
 
 ROUNDS = 7

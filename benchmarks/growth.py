@@ -122,7 +122,7 @@ def read_joints(readers: int, seconds: float) -> Cost:
     The others read as a recorder does, each a process, which the kernel places.
     """
     import graph
-    from shared_control_ros.processes import leave_with_the_parent
+    from shared_control.processes import leave_with_the_parent
     with ExitStack() as stack:
         domain, simulator = stack.enter_context(graph.loop())
         for _ in range(readers - 1):

@@ -20,10 +20,10 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from shared_control.command_line import script_parser
+from shared_control.processes import leave_with_the_parent
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
-from shared_control_ros.processes import leave_with_the_parent
 from shared_control_ros.torque_command import torque_command
 from std_msgs.msg import Float64MultiArray
 

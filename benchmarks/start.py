@@ -44,7 +44,7 @@ def _cpu(command: list[str]) -> float:
 
 def session_s() -> dict[str, float]:
     """Seconds from the command to each node's readiness, to the first tick and to the first episode."""
-    from shared_control_ros.processes import leave_with_the_parent
+    from shared_control.processes import leave_with_the_parent
     from shared_control_testing.nodes import free_domain
     with tempfile.TemporaryDirectory() as folder, free_domain() as domain:
         session = Path(folder) / 'session'

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 from rcl_interfaces.srv import GetParameters
+from shared_control.processes import leave_with_the_parent
 from shared_control_bringup import parameters
 from shared_control_ros import contract
 from shared_control_ros.contract import Topic
-from shared_control_ros.processes import leave_with_the_parent
 from shared_control_ros.stamps import to_ns
 from std_srvs.srv import SetBool, Trigger
 

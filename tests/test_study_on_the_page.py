@@ -14,7 +14,7 @@ from selenium.common.exceptions import (
     WebDriverException,
 )
 from selenium.webdriver.common.keys import Keys
-from shared_control_ros.processes import leave_with_the_parent
+from shared_control.processes import leave_with_the_parent
 from shared_control_testing.page import SIZES, Browser
 from teach_page_node.address import free_port
 

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from shared_control_ros.processes import leave_with_the_parent
+from shared_control.processes import leave_with_the_parent
 
 DDS_VARIABLES = ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'FASTRTPS_DEFAULT_PROFILES_FILE')
 

@@ -6,8 +6,8 @@ import sys
 import time
 
 import pytest
+from shared_control.processes import leave_with_the_parent
 from shared_control_learning.episode_table import TABLE_NAME, read_rows
-from shared_control_ros.processes import leave_with_the_parent
 
 NAMESPACES = ('unshare', '--user', '--map-root-user', '--net', '--mount')
 TWO = r"""
