@@ -64,11 +64,6 @@ class RunResult:
     tests: dict[str, ProtocolResult] = field(default_factory=dict)
     """By the name of the test."""
 
-    @property
-    def label(self) -> str:
-        """As in the names of folders."""
-        return f'{self.condition}/p{self.participant:02d}'
-
 
 _RUN_RESULT = TypeAdapter(RunResult)
 

@@ -27,7 +27,7 @@ import numpy as np
 from shared_control_learning.evaluation.result import checkpoint
 
 from ..study.result import RunResult
-from .measures import Study, away
+from .measures import Study, away, times
 from .statistics import Estimate, Times, bootstrap, sooner, survival
 
 AGAINST = 'autonomous'
@@ -56,12 +56,12 @@ def cell_rows(study: Study) -> list[Row]:
 
 
 def _row(study: Study, condition: str, group: str, runs: list[RunResult]) -> Row:
-    reached = _when(runs, lambda row: 1.0)
+    reached = times(runs)
     row: Row = {'condition': condition, 'tutor': group, 'runs': len(runs), 'skilled': int(reached.reached.sum()),
                 'slowest': float(reached.episodes.max()) if reached.reached.all() else None}
-    times = {'episodes': reached, 'robot_seconds': _when(runs, lambda row: row['seconds']),
+    costs = {'episodes': reached, 'robot_seconds': _when(runs, lambda row: row['seconds']),
              'human_seconds': _when(runs, human_seconds), 'presses': _when(runs, lambda row: row.get('presses', 0.0))}
-    for name, when in times.items():
+    for name, when in costs.items():
         row |= _named(f'{name}_to_skilled', survival(when).median)
     for name in ('interventions', 'noise_share'):
         row |= _mean(f'{name}_an_episode', [
@@ -79,8 +79,7 @@ def _row(study: Study, condition: str, group: str, runs: list[RunResult]) -> Row
             _success(run, test(run)) - _success(other, test(other)) for run, other in pairs])
     if pairs:
         mine, theirs = zip(*pairs, strict=True)
-        row |= _mean(f'sooner_than_{AGAINST}', list(sooner(
-            _when(list(mine), lambda row: 1.0), _when(list(theirs), lambda row: 1.0))))
+        row |= _mean(f'sooner_than_{AGAINST}', list(sooner(times(list(mine)), times(list(theirs)))))
     return row
 
 

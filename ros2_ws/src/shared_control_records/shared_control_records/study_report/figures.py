@@ -25,6 +25,7 @@ from matplotlib.ticker import MaxNLocator
 from shared_control.control.references import FREQUENCIES
 from shared_control_learning.evaluation.perturbation import PUSHES
 from shared_control_learning.evaluation.result import ProtocolResult
+from shared_control_learning.evaluation.statistics import mean_and_sem
 
 from ..plotting.plot import Sheet
 from ..plotting.style import AGENT, FAINT, HUMAN, INK, say_empty
@@ -136,7 +137,7 @@ def draw_test(test: str, track: str) -> Draw:
                     continue
                 lost = study.lost(runs[0])
                 policies = 100 * np.array([_mean_track(result, track, lost) for result in tested])
-                mean, sem = _mean_and_sem(policies)
+                mean, sem = mean_and_sem(policies)
                 _line(axes, tested[0].seconds, mean, _if_enough(sem, len(tested)), colour_of(study, condition),
                       f'{condition} (n = {len(tested)})')
                 rows.append(pd.DataFrame({
@@ -217,13 +218,6 @@ def _mean_track(result: ProtocolResult, track: str, lost: float) -> np.ndarray:
     return np.where(np.isnan(result.position_error), lost * last[:, None], result.position_error).mean(axis=0)
 
 
-def _mean_and_sem(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard error of the mean over the rows; of a single one the error is not known (nan)."""
-    count = len(values)
-    sem = values.std(axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.full(values.shape[1], np.nan)
-    return values.mean(axis=0), sem
-
-
 def _by_episode(runs: list[RunResult], column: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Numbers of episodes; mean and SEM over the runs that had such an episode, and how many those were."""
     values = [np.array([row[column] for row in run.episodes]) for run in runs]
@@ -231,10 +225,7 @@ def _by_episode(runs: list[RunResult], column: str) -> tuple[np.ndarray, np.ndar
     table = np.full((len(values), length), np.nan)
     for row, own in zip(table, values, strict=True):
         row[:len(own)] = own
-    count = np.isfinite(table).sum(axis=0)
-    mean = np.nanmean(table, axis=0)
-    spread = np.sqrt(np.nansum((table - mean) ** 2, axis=0) / np.maximum(count - 1, 1))
-    return np.arange(1, length + 1), mean, np.where(count > 1, spread / np.sqrt(count), np.nan), count
+    return np.arange(1, length + 1), *mean_and_sem(table), np.isfinite(table).sum(axis=0)
 
 
 def _group(study: Study, condition: str, group: str) -> list[RunResult]:
