@@ -23,6 +23,7 @@ from pathlib import Path
 import pytest
 from shared_control.teaching.profiles import profile
 from shared_control_records.study.folder import StudyError, StudyFolder
+from shared_control_records.study.job import seed_of_tests
 from shared_control_records.study.plan import PlanError, draw_tutor, load_plan
 
 EXAMPLES = Path(__file__).parents[4] / 'studies'
@@ -58,6 +59,13 @@ def test_every_participant_in_every_condition_from_one_seed(plan_file):
     assert len({participant.seed for participant in plan.participants}) == 3
     assert load_plan(plan_file(PLAN)) == plan, 'the same file gives the same participants'
     assert load_plan(plan_file(PLAN.replace('seed: 3', 'seed: 4'))).participants != plan.participants
+
+
+def test_tests_begin_alike_in_all_conditions_and_otherwise_in_a_study_of_another_seed(plan_file):
+    plan, other = load_plan(plan_file(PLAN)), load_plan(plan_file(PLAN.replace('seed: 3', 'seed: 100')))
+    seeds = [seed_of_tests(plan, job) for job in plan.jobs]
+    assert seeds[:3] == seeds[3:] and len(set(seeds)) == 3
+    assert not {*seeds} & {seed_of_tests(other, job) for job in other.jobs}
 
 
 def test_a_condition_may_be_of_another_task(plan_file):

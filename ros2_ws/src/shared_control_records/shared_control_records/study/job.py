@@ -77,7 +77,7 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
                     'noise_share': training.noise_shares[number]}
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
-        episodes=episodes, tests=run_tests(plan, job, path / POLICY_NAME) | keeper.run_tests(job),
+        episodes=episodes, tests=run_tests(plan, job, path / POLICY_NAME) | keeper.run_tests(plan, job),
         seconds=time.monotonic() - started)
 
 
@@ -99,20 +99,25 @@ class _Checkpoints(Callbacks):
         if kept is not None and not kept.exists():
             write_atomically(kept, self._policy.read_bytes())
 
-    def run_tests(self, job: Job) -> dict[str, ProtocolResult]:
+    def run_tests(self, plan: Plan, job: Job) -> dict[str, ProtocolResult]:
         """The randomised test of the policies that were kept, by name."""
         found = {}
         for number, path in self._kept.items():
             if path.exists():
                 learner = load_policy(path)
-                [result] = run_protocol('randomized', learner.act, learner.task, seed=_test_seed(job),
+                [result] = run_protocol('randomized', learner.act, learner.task, seed=seed_of_tests(plan, job),
                                         physics=job.condition.tested_in or job.condition.physics)
                 found[checkpoint(number)] = replace(result, test=checkpoint(number))
         return found
 
 
-def _test_seed(job: Job) -> int:
-    return episode_seed(TEST_SEED, job.participant.number)
+def seed_of_tests(plan: Plan, job: Job) -> int:
+    """Seed of the tests of a run's policies.
+
+    The same in all conditions, which are compared in pairs; another one in a study of another seed: what is chosen in
+    one (studies/baselines_tuning.yaml) is not reported on the same ball starts in another.
+    """
+    return episode_seed(TEST_SEED + plan.seed, job.participant.number)
 
 
 def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
@@ -135,7 +140,7 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
     learner = load_policy(policy)
     task, physics = learner.task, job.condition.tested_in or job.condition.physics
     results = [result for name in plan.tests
-               for result in run_protocol(name, learner.act, task, seed=_test_seed(job), physics=physics)]
+               for result in run_protocol(name, learner.act, task, seed=seed_of_tests(plan, job), physics=physics)]
     return {result.test: result for result in results}
 
 
