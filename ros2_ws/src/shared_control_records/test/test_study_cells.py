@@ -102,6 +102,39 @@ def test_who_was_skilled_sooner_counts_as_in_the_end_and_a_fifth_run_brings_inte
     assert row['success_in_the_end_low'] < 0.85 < row['success_in_the_end_high']
 
 
+def test_a_run_without_a_policy_by_then_counts_as_lost_in_success_and_error_alike(plan):
+    """Whoever has held for longer than 10 s in the first episode has no policy by then, and is not left out."""
+    def make(job):
+        made = result(job, None, 4, 20, {checkpoint(1): 20, checkpoint(3): 20})
+        if job.participant.number % 6 not in (1, 2):
+            made.episodes[0]['seconds'] = 100.0
+        return made
+
+    found = study(plan, make)
+    row = cell_rows(found)[0]
+    assert row['success_after_10_human_seconds'] == pytest.approx(2 / 6)
+    known = [1e3 * np.nan_to_num(abs(run.tests[checkpoint(3)].position_error), nan=0.2)[:, -150:].mean()
+             for run in found.of('coached')[:2]]
+    assert row['error_mm_after_10_human_seconds'] == pytest.approx((sum(known) + 4 * 200.0) / 6)
+
+
+def test_what_is_not_known_of_one_run_is_not_told_of_the_others_alone(plan):
+    def make(job):
+        made = result(job, 2, 4, 20, {checkpoint(1): 20, checkpoint(3): 20})
+        if job.name == 'coached/p01':  # as an older version left it
+            del made.tests[checkpoint(3)]
+            for episode in made.episodes:
+                del episode['presses'], episode['noise_share']
+        return made
+
+    unknown, known, _ = cell_rows(study(plan, make))
+    assert known['presses_to_skilled'] == 8.0
+    for name in ('presses_to_skilled', 'noise_share_an_episode', 'success_after_3_episodes',
+                 'error_mm_after_3_episodes', 'success_after_3_episodes_against_autonomous'):
+        assert unknown[name] is unknown[f'{name}_low'] is None
+    assert unknown['success_in_the_end'] == unknown['success_after_1_episodes'] == 1.0
+
+
 def test_rows_can_be_written_and_read(plan):
     rows = cell_rows(study(plan, lambda job: result(job, None, 3, 0)))
     assert json.loads(json.dumps(rows, allow_nan=False)) == rows
@@ -136,7 +169,7 @@ def test_the_command_runs_a_plan_prints_its_cells_and_keeps_policies_on_the_way(
     path.write_text("""
 participants: {simulated: {bang_bang: 1}}
 conditions: {hg_dagger: {episodes: 2, evaluate_every: 2, sharing: override}}
-tests: []
+tests: [randomized]
 checkpoints: [1]
 """)
     folder = StudyFolder(tmp_path / 'study')
@@ -151,5 +184,5 @@ checkpoints: [1]
     assert 'hg_dagger/p01: not skilled' in said.err and 'learner' in said.err
     [job] = load_plan(path).jobs
     kept = load_result(folder.run(job))
-    assert list(kept.tests) == [checkpoint(1)] and len(kept.tests[checkpoint(1)].success) == 20
+    assert list(kept.tests) == ['randomized', checkpoint(1)] and len(kept.tests[checkpoint(1)].success) == 20
     assert [set(row) >= {'presses', 'interventions', 'noise_share'} for row in kept.episodes] == [True, True]

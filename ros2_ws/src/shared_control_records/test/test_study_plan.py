@@ -131,6 +131,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     ('episodes: 5', 'epochs: 5', "conditions.coached: no key 'epochs'; there are episodes, evaluate_every, physics"),
     ('taught: false', 'taught: maybe', "conditions.alone.taught: Input should be a valid boolean, found 'maybe'"),
     ('conditions:', 'tests: [jump]\nconditions:', "tests.0: Input should be 'randomized', 'perturbation', 'traj"),
+    ('conditions:', 'tests: []\ncheckpoints: [2]\nconditions:', 'checkpoints: a run that ends before one counts there'),
     ('alone:', '../alone:', 'a condition is named by letters'),
     ('alone:', '1:', 'conditions.1: Input should be a valid string'),
     ('{expert: 1, low: 2}', '[expert]', 'participants.simulated: Input should be a valid dictionary'),

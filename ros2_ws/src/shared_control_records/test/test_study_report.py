@@ -128,7 +128,7 @@ def test_the_report_is_one_page_with_its_figures_and_numbers(folder, tmp_path):
     assert f'shared-control {version("shared-control")} · seed 0 · {date.today():%Y-%m-%d}</footer>' in page
     assert page.count('src="data:image/svg+xml;base64,') == 11
     assert not re.search(r'(src|href)="(?!data:)', page), 'needs no other file'
-    for name in (*figures, 'runs', 'conditions', 'comparisons', 'groups'):
+    for name in (*figures, 'runs', 'conditions', 'comparisons', 'groups', 'cells'):
         with (tmp_path / f'report/data/{name}.csv').open() as file:
             assert len(list(csv.DictReader(file))) > 1
     with (tmp_path / 'report/data/fig16_randomized_position.csv').open() as file:
@@ -195,5 +195,5 @@ def test_who_is_left_out_by_the_experimenter_is_in_no_figure_and_is_named(tmp_pa
     assert [run.participant for run in study.runs] == [1, 3] and study.missing == 0
     page = write_study_report(folder, tmp_path / 'report').read_text()
     assert re.search(r'participant\s+2: knew the &lt;plan&gt;', page) and 'runs are done' not in page
-    assert str(tmp_path) not in page
+    assert str(tmp_path) not in page and not (tmp_path / 'report/data/cells.csv').exists()
     assert 'if it then passed. Runs that never got there' in ' '.join(page.split())

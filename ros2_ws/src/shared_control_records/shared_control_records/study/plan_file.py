@@ -187,6 +187,13 @@ class PlanFile(Section):
                 for name, settings in content.items()}
 
     @model_validator(mode='after')
+    def _who_ends_before_a_checkpoint_is_tested(self) -> 'PlanFile':
+        if self.checkpoints and 'randomized' not in self.tests:
+            raise ValueError('checkpoints: a run that ends before one counts there by its last test: add randomized to '
+                             'tests, or leave checkpoints out')
+        return self
+
+    @model_validator(mode='after')
     def _tutors_know_the_tasks(self) -> 'PlanFile':
         if isinstance(self.participants, Simulated):
             for name, learning in self.conditions.items():

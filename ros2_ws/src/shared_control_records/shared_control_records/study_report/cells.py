@@ -15,7 +15,8 @@
 """A study cell by cell: each condition with each group of tutors, in the figures that the field reports.
 
 Every figure has its 95 % interval (:mod:`.statistics`). Runs that never got there are censored where times are told,
-and count like all others elsewhere. Conditions are compared with :data:`AGAINST`, in pairs of the same seed.
+and count like all others elsewhere; what is not known of one of them is not known of the row, which would else be of the
+others alone. Conditions are compared with :data:`AGAINST`, in pairs of the same seed.
 """
 
 import math
@@ -38,11 +39,13 @@ HUMAN_SECONDS = (10, 30, 60)
 """Seconds of held moments after which policies are compared."""
 
 Row = dict[str, float | int | str | None]
+_UNKNOWN = Estimate(math.nan, math.nan, math.nan)
 
 
 def cell_rows(study: Study) -> list[Row]:
-    """A row for each condition and group of participants, in the plan's order; what is not known, or infinite, is None.
+    """A row for each condition and group of simulated participants, in the plan's order.
 
+    What is infinite, or is not known of one of the runs, is None.
     A figure that is estimated has its interval under its name with ``_low`` and ``_high``.
     """
     rows = []
@@ -60,9 +63,10 @@ def _row(study: Study, condition: str, group: str, runs: list[RunResult]) -> Row
     row: Row = {'condition': condition, 'tutor': group, 'runs': len(runs), 'skilled': int(reached.reached.sum()),
                 'slowest': float(reached.episodes.max()) if reached.reached.all() else None}
     costs = {'episodes': reached, 'robot_seconds': _when(runs, lambda row: row['seconds']),
-             'human_seconds': _when(runs, human_seconds), 'presses': _when(runs, lambda row: row.get('presses', 0.0))}
+             'human_seconds': _when(runs, human_seconds),
+             'presses': _when(runs, lambda row: row.get('presses', math.nan))}
     for name, when in costs.items():
-        row |= _named(f'{name}_to_skilled', survival(when).median)
+        row |= _named(f'{name}_to_skilled', survival(when).median if np.isfinite(when.episodes).all() else _UNKNOWN)
     for name in ('interventions', 'noise_share'):
         row |= _mean(f'{name}_an_episode', [
             float(np.mean([episode.get(name, math.nan) for episode in run.episodes])) for run in runs])
@@ -89,7 +93,7 @@ def human_seconds(row: dict[str, Any]) -> float:
 
 
 def _when(runs: list[RunResult], cost: Callable[[dict[str, Any]], float]) -> Times:
-    """What it had cost when the runs were skilled, or ended."""
+    """What it had cost when the runs were skilled, or ended; nan where an episode does not tell."""
     return Times(np.array([sum(map(cost, run.episodes[:run.skilled])) for run in runs], float),
                  np.array([run.skilled is not None for run in runs], bool))
 
@@ -108,15 +112,17 @@ def _test_within(study: Study, seconds: float, run: RunResult) -> str | None:
 
 
 def _success(run: RunResult, test: str | None) -> float:
-    """Share of successes; 0 of a policy that has learned nothing yet."""
+    """Share of successes; 0 where there was no policy yet."""
     if test is None:
         return 0.0
     return float(run.tests[test].success.mean()) if test in run.tests else math.nan
 
 
 def _error(study: Study, run: RunResult, test: str | None) -> float:
-    """Mean |position error| over the last 3 s, mm; a fallen ball lies where the tray ends."""
-    if test is None or test not in run.tests:
+    """Mean |position error| over the last 3 s, mm; a ball that fell, or that no policy moved, lies where the tray ends."""
+    if test is None:
+        return 1e3 * study.lost(run)
+    if test not in run.tests:
         return math.nan
     return 1e3 * float(away(run.tests[test], study.lost(run))[:, -150:].mean())
 
@@ -128,8 +134,9 @@ def _paired(study: Study, condition: str, runs: list[RunResult]) -> list[tuple[R
 
 
 def _mean(name: str, values: list[float]) -> Row:
-    known = np.array([value for value in values if math.isfinite(value)])
-    return _named(name, bootstrap(known, np.zeros(len(known)), lambda rows: rows.mean(axis=-1)))
+    found = np.array(values)
+    return _named(name, bootstrap(found, np.zeros(len(found)), lambda rows: rows.mean(axis=-1))
+                  if np.isfinite(found).all() else _UNKNOWN)
 
 
 def _named(name: str, estimate: Estimate) -> Row:

@@ -60,7 +60,8 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
                          f'nobody, and the tests of what people have taught{problems}')
     runs = run_table(study)
     tables = {'runs': runs, 'conditions': conditions_table(study, runs), 'comparisons': comparison_table(study, runs),
-              'groups': group_table(runs), 'cells': pd.DataFrame(cell_rows(study)),
+              'groups': group_table(runs),
+              **({'cells': pd.DataFrame(cell_rows(study))} if study.plan.people is None else {}),
               **({'transfer': transfer_table(study)} if 'elsewhere' in runs else {})}
     drawn = []
     footer = origin(study.plan.seed)
