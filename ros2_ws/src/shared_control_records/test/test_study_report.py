@@ -58,10 +58,10 @@ def test_the_interquartile_mean_is_that_of_the_middle_half():
 
 
 def test_a_stratified_bootstrap_never_mixes_groups():
-    """All spread lies between the groups, so whoever resamples within them finds none."""
-    values, groups = np.repeat([0.0, 10.0], 6), np.repeat(['low', 'high'], 6)
+    """Nearly all spread lies between the groups, so whoever resamples within them finds little."""
+    values, groups = np.repeat([0.0, 10.0], 6) + np.tile([-0.1, 0.1], 6), np.repeat(['low', 'high'], 6)
     estimate = bootstrap(values, groups, lambda rows: rows.mean(axis=-1))
-    assert (estimate.low, estimate.value, estimate.high) == (5.0, 5.0, 5.0)
+    assert 4.9 < estimate.low < estimate.value < estimate.high < 5.1
     pooled = bootstrap(values, np.zeros(12), lambda rows: rows.mean(axis=-1))
     assert pooled.low < 4.0 < 6.0 < pooled.high
 
@@ -75,9 +75,20 @@ def test_the_bootstrap_covers_the_truth_as_often_as_it_says():
     assert 180 <= covered <= 199
 
 
+def test_two_experts_among_many_take_no_interval_away():
+    """As studies/thesis.yaml has them; nearly as wide as if all were one group."""
+    values, groups = np.random.default_rng(0).normal(3.0, 1.0, 24), np.repeat(['expert', 'high', 'low'], [2, 11, 11])
+    whole = bootstrap(values, np.zeros(24))
+    within = bootstrap(values, groups)
+    assert within.low < within.value < within.high
+    assert within.high - within.low == pytest.approx(whole.high - whole.low, rel=0.2)
+
+
 def test_few_or_equal_values_have_no_interval_that_looks_certain():
-    few = bootstrap(np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]), np.repeat(['expert', 'novice'], [2, 5]))
-    assert few.value == 4.0 and np.isnan([few.low, few.high]).all()
+    few = bootstrap(np.array([1.0, 2.0, 3.0, 4.0]), np.zeros(4))
+    assert few.value == 2.5 and np.isnan([few.low, few.high]).all()
+    each_alone = bootstrap(np.arange(8.0), np.arange(8))
+    assert each_alone.value == 3.5 and np.isnan([each_alone.low, each_alone.high]).all()
     always = improvement(np.ones(8), np.zeros(8))
     assert always.value == 1.0 and np.isnan([always.low, always.high]).all()
     pair = survival(Times(np.array([3.0, 5.0]), np.array([True, True])))

@@ -31,15 +31,15 @@ from scipy import stats
 CONFIDENCE = 0.95
 RESAMPLES = 5000
 ENOUGH = 5
-"""Participants in a group below which no interval is given: one that is drawn from one or two looks certain."""
+"""Participants below which no interval is given: one that is drawn from one or two looks certain."""
 
 
 @dataclass(frozen=True)
 class Estimate:
     """A number and its 95 % interval; inf where it was never reached.
 
-    nan where there is nothing to tell it from: an interval of fewer than :data:`ENOUGH` in a group, or of values that
-    are all alike, would have no width and look certain.
+    nan where there is nothing to tell it from: an interval of fewer than :data:`ENOUGH`, or one without width, would look
+    certain.
     """
 
     value: float
@@ -56,6 +56,9 @@ def bootstrap(values: np.ndarray, strata: np.ndarray, statistic: Callable[[np.nd
               seed: int = 0) -> Estimate:
     """A statistic with its percentile interval, by resampling participants within their strata.
 
+    However small a stratum is: two experts among 24 participants vary too little when they are resampled, but are as
+    small a part of the whole.
+
     Args:
         values: one a participant, (n,).
         strata: of each participant, (n,).
@@ -65,12 +68,12 @@ def bootstrap(values: np.ndarray, strata: np.ndarray, statistic: Callable[[np.nd
         return Estimate(np.nan, np.nan, np.nan)
     random = np.random.default_rng(seed)
     members = [np.flatnonzero(strata == stratum) for stratum in np.unique(strata)]
-    if min(map(len, members)) < ENOUGH or np.ptp(values) == 0.0:
+    if len(values) < ENOUGH:
         return Estimate(float(statistic(values)), np.nan, np.nan)
     drawn = np.hstack([random.choice(rows, (RESAMPLES, len(rows))) for rows in members])
     tail = 50 * (1 - CONFIDENCE)
     low, high = np.percentile(statistic(values[drawn]), [tail, 100 - tail])
-    return Estimate(float(statistic(values)), float(low), float(high))
+    return Estimate(float(statistic(values)), *_with_width(float(low), float(high)))
 
 
 def improvement(better: np.ndarray, strata: np.ndarray) -> Estimate:
@@ -141,12 +144,15 @@ def survival(times: Times) -> Survival:
         low, high = np.full((2, len(waiting)), np.nan)
         median = Estimate(when_half(waiting), np.nan, np.nan)
     else:
-        ends = when_half(low), when_half(high)
-        # One without width would look certain.
-        median = Estimate(when_half(waiting), *(ends if ends[0] < ends[1] else (np.nan, np.nan)))
+        median = Estimate(when_half(waiting), *_with_width(when_half(low), when_half(high)))
     return Survival(
         np.concatenate([[0.0], curve.quantiles]), np.concatenate([[1.0], waiting]), np.concatenate([[1.0], low]),
         np.concatenate([[1.0], high]), median)
+
+
+def _with_width(low: float, high: float) -> tuple[float, float]:
+    """An interval; nan when it has no width, with which it would look certain."""
+    return (low, high) if low < high else (np.nan, np.nan)
 
 
 def _held(band: np.ndarray) -> np.ndarray:
