@@ -30,17 +30,24 @@ import urllib.request
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 from shared_control.cli import main
+from shared_control_records.session.folder import SessionFolder
+from shared_control_records.study import job as job_module
 from shared_control_records.study.asking import TerminalAsker
 from shared_control_records.study.folder import StudyError, StudyFolder
 from shared_control_records.study.form_page import FormPage
+from shared_control_records.study.job import run_job, taught_by_a_person
 from shared_control_records.study.notes import read_notes
 from shared_control_records.study.people import INTERRUPTED, asker_of, lead_through, withdraw
 from shared_control_records.study.plan_file import Question
 from shared_control_records.study.progress import SCALES, Progress, ProgressError
+from shared_control_records.study.result import load_brief, save_result
 from shared_control_records.study_report.participants import excluded_participants, participants_table, turnout
 from shared_control_records.study_report.report import write_study_report
+from shared_control_testing.studies import made_result
 
 PLAN = """
 participants:
@@ -405,6 +412,74 @@ def test_the_experimenter_notes_while_somebody_takes_part_and_leaves_them_out(st
     assert [note.kind for note in read_notes(folder.person(plan.participant(1)))] == ['note', 'exclude', 'include']
     withdraw(folder, plan, plan.participant(1), 'delete')
     assert read_notes(folder.person(plan.participant(1))) == [] and turnout(folder, plan) == (2, 1, 0, 1, 0)
+
+
+def taught_session(study, *rows, successes=None):
+    """A session of participant 1 that came to its end: rows are number, phase and verdict of 10 s and 1 s of learning."""
+    folder, plan = study
+    job = next(job for job in plan.jobs if job.name == 'coached/p01')
+    session = SessionFolder(folder.session(job))
+    session.learner.mkdir(parents=True, exist_ok=True)
+    session.settings.write_text('{"tutor": "page"}')
+    session.episodes.write_text('episode,phase,seconds,learn_seconds,return,fallen,verdict,reason\n' + ''.join(
+        f'{number},{phase},10,1,5,0,{verdict},\n' for number, phase, verdict in rows))
+    if successes is not None:
+        session.policy.write_bytes(b'')
+        episode = {'kept': True, 'position_error': 0.0, 'velocity': 0.0, 'ball_start': 0.0}
+        session.test.write_text(json.dumps({
+            'episodes': [{**episode, 'success': number < successes} for number in range(20)]}))
+    return session, lambda: taught_by_a_person(folder, plan, job)
+
+
+def test_an_episode_that_was_discarded_and_done_again_counts_once_and_its_time_is_spent(study, monkeypatch):
+    monkeypatch.setattr(job_module, 'run_tests', lambda *_: {})
+    _, test = taught_session(
+        study, (1, 'teach', ''), (2, 'teach', 'discard'), (2, 'broken off', ''), (2, 'teach', 'success'),
+        (3, 'teach', 'discard'), (3, 'teach', ''), (4, 'teach', 'discard'), successes=19)
+    run = test()
+    assert [(row['episode'], row['verdict']) for row in run.episodes] == [(1, ''), (2, 'success'), (3, '')]
+    assert run.skilled == 3 and run.seconds == 7 * 11.0
+    _, test = taught_session(study, (1, 'teach', ''), (2, 'teach', 'discard'), (3, 'teach', ''), successes=18)
+    run = test()
+    assert len(run.episodes) == 3, 'discarded while the next one ran: the robot has kept it'
+    assert run.skilled is None
+
+
+@pytest.mark.parametrize('rows', [(), ((1, 'teach', 'discard'), (1, 'broken off', ''))])
+def test_who_taught_to_the_end_and_left_no_policy_is_in_every_figure_as_lost(study, rows, answers, tmp_path):
+    folder, plan = study
+    answers(*BEGINNING, '', *'123456', '', *'654321', 'Nothing.')
+    assert lead(study, Sessions())
+    taught_session(study, *rows)
+    run_job(folder, 'coached/p01')
+    assert (load_brief(folder.run(plan.jobs[0])).skilled, load_brief(folder.run(plan.jobs[0])).seconds) == (
+        None, 11.0 * len(rows))
+    write_study_report(folder, tmp_path / 'alone')
+
+    good = next(job for job in plan.jobs if job.name == 'coached/p02')
+    folder.run(good).mkdir(parents=True)
+    save_result(made_result(good, np.random.default_rng(1)), folder.run(good))
+    page = write_study_report(folder, tmp_path / 'both').read_text()
+    assert '1 of 2 runs got there' in page
+    table = pd.read_csv(tmp_path / 'both/data/conditions.csv').set_index('measure')
+    assert table.basis['Episodes to skilled (median)'] == '1 of 2 skilled'
+    assert table.value['Randomised test: episodes that succeed'] == 50.0
+    assert table.value['Trajectory tests: ball kept'] == 50.0
+    lost = pd.read_csv(tmp_path / 'both/data/runs.csv').set_index('participant').loc[1]
+    assert [lost.episodes, lost.kept, lost.success, lost.alone_error, lost.pushed_error, lost.moving_error] == [
+        0, 0, 0, 20, 20, 20]
+
+
+def test_a_session_whose_files_do_not_belong_together_is_named(study):
+    session, test = taught_session(study, (1, 'teach', ''))
+    with pytest.raises(ValueError, match=r'episodes\.csv and .*policy\.safetensors do not belong .* is missing'):
+        test()
+    session.policy.write_bytes(b'')
+    with pytest.raises(FileNotFoundError, match=r'test\.json is missing: shared-control session --resume .*coached'):
+        test()
+    session.episodes.unlink()
+    with pytest.raises(ValueError, match=r'do not belong .* 0 episodes .* is there; take both from a back-up'):
+        test()
 
 
 def test_what_people_said_is_a_table_before_anything_is_tested(study, answers, tmp_path):

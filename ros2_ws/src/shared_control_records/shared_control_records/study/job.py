@@ -16,15 +16,17 @@
 
 import time
 from dataclasses import replace
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 from shared_control.control.sharing import Sharing
 from shared_control.files import write_atomically
 from shared_control.seeds import episode_seed
+from shared_control.verdict import Verdict
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
-from shared_control_learning.episode_table import TABLE_NAME, TEXTS, read_rows
+from shared_control_learning.episode_table import BROKEN_OFF, TABLE_NAME, TEXTS, read_rows
 from shared_control_learning.evaluation.evaluate import SUCCESSES_NEEDED, TEST_EPISODES, TEST_SEED
 from shared_control_learning.evaluation.result import ProtocolResult, checkpoint
 from shared_control_learning.evaluation.run import run_protocol
@@ -70,7 +72,7 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
         job.participant.tutor if job.condition.taught else None, job.participant.seed, job.condition.episodes,
         until_skilled=True, physics=job.condition.physics, folder=path, evaluate_every=job.condition.evaluate_every,
         sharing=Sharing(job.condition.sharing), callbacks=keeper)
-    episodes = table(path / TABLE_NAME)
+    episodes = learned_from(read_table(path / TABLE_NAME))
     if len(training.presses) == len(episodes):  # not of a run that an older version began
         for number, row in enumerate(episodes):
             row |= {'presses': training.presses[number], 'interventions': training.interventions[number],
@@ -121,17 +123,30 @@ def seed_of_tests(plan: Plan, job: Job) -> int:
 
 
 def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
-    """Test what a person has taught. The person said when; skilled is who then passed the session's test."""
+    """Test what a person has taught. The person said when; skilled is who then passed the session's test.
+
+    Who taught to the end and left no policy, since every episode was discarded or they said that they were done before the
+    first, has a run like everybody else: of no episodes and without tests, which the report counts as lost.
+
+    Raises:
+        ValueError: table and policy of the session do not belong together, or one of its files is damaged.
+        OSError: one is missing.
+    """
     session = SessionFolder.open(folder.session(job))
-    test = load_test(session.test)
-    if test is None:
-        raise FileNotFoundError(f'{session.test} is missing: the teaching is not finished')
-    episodes = table(session.episodes)
-    passed = test.successes >= len(test.episodes) * SUCCESSES_NEEDED / TEST_EPISODES
+    rows = read_table(session.episodes)
+    episodes = learned_from(rows)
+    if bool(episodes) != session.policy.exists():
+        raise ValueError(f'{session.episodes} and {session.policy} do not belong together: the one has '
+                         f'{len(episodes)} episodes that were learned from, the other is '
+                         f'{"missing" if episodes else "there"}; take both from a back-up')
+    test = load_test(session.test) if episodes else None
+    if episodes and test is None:
+        raise FileNotFoundError(f'{session.test} is missing: shared-control session --resume {session.path} tests again')
+    passed = test is not None and test.successes >= len(test.episodes) * SUCCESSES_NEEDED / TEST_EPISODES
     return RunResult(
         **describe(job, simulated=False), first_pass=None, skilled=len(episodes) if passed else None,
-        episodes=episodes, tests=run_tests(plan, job, session.policy),
-        seconds=sum(row['seconds'] + row['learn_seconds'] for row in episodes),
+        episodes=episodes, tests=run_tests(plan, job, session.policy) if episodes else {},
+        seconds=sum(row['seconds'] + row['learn_seconds'] for row in rows),
         tlx=Progress.of(folder.person(job.participant)).tlx.get(job.condition.name))
 
 
@@ -144,7 +159,21 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
     return {result.test: result for result in results}
 
 
-def table(path: Path) -> list[dict[str, Any]]:
-    """Taught episodes of an ``episodes.csv``, numbers as numbers."""
+def read_table(path: Path) -> list[dict[str, Any]]:
+    """Episodes of teaching in an ``episodes.csv``, those that were discarded or broken off included; numbers as numbers.
+
+    Raises:
+        ValueError: it is no table of episodes; the message names it.
+    """
     return [{key: value if key in TEXTS else float(value) for key, value in row.items()}
-            for row in read_rows(path) if row['phase'] == 'teach']
+            for row in read_rows(path) if row['phase'] in ('teach', BROKEN_OFF)]
+
+
+def learned_from(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of a table whose episodes the robot has learned from: one for each number.
+
+    What is discarded before the next episode begins is unlearned and done again, and does not count. What is discarded
+    later is labelled alone (docs/contract.md, Verdicts): the robot keeps it, and it counts.
+    """
+    return [row for row, after in zip_longest(rows, rows[1:]) if row['phase'] == 'teach' and not (
+        row.get('verdict') == Verdict.DISCARD and (after is None or after['episode'] == row['episode']))]

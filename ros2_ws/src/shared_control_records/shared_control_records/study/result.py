@@ -56,13 +56,14 @@ class RunResult:
     """Episodes before the second of two tests in a row was passed; for a real participant, episodes until they said
     that it has learned it, if it then passed. None: censored at the last episode."""
     seconds: float
-    """Time of computing; for a real participant, of teaching."""
+    """Time of computing; for a real participant, of teaching, with episodes that were discarded or broken off."""
     episodes: list[dict[str, Any]]
-    """Rows of ``episodes.csv``, numbers as numbers."""
+    """Rows of ``episodes.csv`` whose episodes the robot has learned from, numbers as numbers. None: there is no policy,
+    and the run counts as lost in every test."""
     tlx: dict[str, float] | None = None
     """Raw NASA-TLX of a real participant, by scale, 0..100."""
     tests: dict[str, ProtocolResult] = field(default_factory=dict)
-    """By the name of the test."""
+    """By the name of the test; none of a run without a policy."""
 
 
 _RUN_RESULT = TypeAdapter(RunResult)

@@ -105,7 +105,7 @@ def draw_episodes(figure: SubFigure, study: Study) -> pd.DataFrame:
                             linewidth=0)
         rows += [{'condition': condition, 'participant': run.participant, 'episodes': episodes, 'skilled': skilled}
                  for run, episodes, skilled in zip(study.of(condition), reached.episodes, reached.reached, strict=True)]
-    longest = max(row['episodes'] for row in rows)
+    longest = max(1, *(row['episodes'] for row in rows))
     dots.set(title='Episodes to skilled', ylabel='Episodes', ylim=(0, 1.25 * longest),  # room for a legend
              xlim=(-0.5, len(study.conditions) - 0.5))
     dots.set_xticks(range(len(study.conditions)), study.conditions)
@@ -205,7 +205,7 @@ def _returns_shown(study: Study) -> tuple[float, float]:
     One in which it falls costs thousands: it is drawn at the edge.
     """
     rows = [row for run in study.runs for row in run.episodes]
-    kept = [row['return'] for row in rows if not row['fallen']] or [row['return'] for row in rows]
+    kept = [row['return'] for row in rows if not row['fallen']] or [row['return'] for row in rows] or [0.0]
     margin = 0.05 * (max(kept) - min(kept) or 1.0)
     return min(kept) - margin, max(kept) + margin
 

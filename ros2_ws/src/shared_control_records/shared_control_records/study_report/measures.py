@@ -14,6 +14,7 @@
 
 """What the report says of one run, as numbers; and a study's runs by condition."""
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -31,6 +32,7 @@ from ..study.result import ResultError, RunResult, load_result
 from .participants import excluded_participants
 from .statistics import Times
 
+Row = dict[str, float | int | str | bool | None]
 BEST = 5
 """Runs of a condition that the thesis compares (4.1)."""
 
@@ -60,7 +62,7 @@ class Study:
         """The best runs of a condition, best first; all when ``count`` is None.
 
         By least mean |position error| in the perturbation test, which lasts 30 s as the test does by which the thesis
-        ranks (4.1). Without that test, by the last return.
+        ranks (4.1). Without that test, by the last return. Runs without a policy come last.
         """
         return sorted(self.of(condition), key=self._badness)[:count]
 
@@ -78,6 +80,8 @@ class Study:
         return lost_error(self.task(run.condition))
 
     def _badness(self, run: RunResult) -> float:
+        if not run.episodes:
+            return math.inf
         test = run.tests.get('perturbation')
         return -run.episodes[-1]['return'] if test is None else float(away(test, self.lost(run)).mean())
 
@@ -107,7 +111,8 @@ def load_study(folder: StudyFolder) -> Study:
 
 def run_table(study: Study) -> pd.DataFrame:
     """A row a run: who, what, and the measures of the tests; errors in cm and cm/s."""
-    return pd.DataFrame([_row(run, study.lost(run)) for run in study.runs])
+    return pd.DataFrame([_row(run, study.lost(run)) if run.episodes else
+                         {**_about(run), **_lost_measures(study.plan, study.lost(run))} for run in study.runs])
 
 
 def times(runs: list[RunResult]) -> Times:
@@ -141,18 +146,31 @@ def transfers(run: RunResult) -> list[ProtocolResult]:
             if name.startswith(TRANSFER) and name != TRANSFER + AS_TAUGHT.name]
 
 
-def _row(run: RunResult, lost: float) -> dict[str, float | int | str | bool | None]:
-    fallen = [fell for name, test in run.tests.items() if not name.startswith((TRANSFER, CHECKPOINT))
-              for fell in test.fallen]
-    row: dict[str, float | int | str | bool | None] = {
+def _about(run: RunResult) -> Row:
+    return {
         'condition': run.condition, 'taught': run.taught, 'participant': run.participant, 'group': run.group,
         'simulated': run.simulated,
         'seed': run.seed, 'episodes': len(run.episodes), 'first_pass': run.first_pass, 'skilled': run.skilled,
-        'seconds': run.seconds, 'kept': 1.0 - float(np.mean(fallen)) if fallen else None,
+        'seconds': run.seconds, 'workload': float(np.mean(list(run.tlx.values()))) if run.tlx else None}
+
+
+def _lost_measures(plan: Plan, lost: float) -> Row:
+    """The measures of a run that left no policy: it fails in every test, its ball where the tray ends."""
+    of_tests: dict[str, Row] = {
+        'randomized': {'kept': 0.0, 'success': 0.0, 'alone_error': 100 * lost},
+        'perturbation': {'kept': 0.0, 'pushed_error': 100 * lost, 'pushed_kept': 0.0},
+        'trajectory': {'kept': 0.0, 'moving_error': 100 * lost, 'moving_kept': 0.0}, 'transfer': {'elsewhere': 0.0}}
+    return {name: value for test in plan.tests for name, value in of_tests[test].items()}
+
+
+def _row(run: RunResult, lost: float) -> Row:
+    fallen = [fell for name, test in run.tests.items() if not name.startswith((TRANSFER, CHECKPOINT))
+              for fell in test.fallen]
+    row: Row = {
+        **_about(run), 'kept': 1.0 - float(np.mean(fallen)) if fallen else None,
         'human_share_first': run.episodes[0].get('human_share'),
         'human_share_last': run.episodes[-1].get('human_share'),
-        'human_variance': _variance(run, 'std_human'), 'agent_variance': _variance(run, 'std_agent'),
-        'workload': float(np.mean(list(run.tlx.values()))) if run.tlx else None}
+        'human_variance': _variance(run, 'std_human'), 'agent_variance': _variance(run, 'std_agent')}
     alone = run.tests.get('randomized')
     if alone is not None:
         row['success'] = float(alone.success.mean())

@@ -90,11 +90,16 @@ def comparison_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
 
 
 def transfer_table(study: Study) -> pd.DataFrame:
-    """A row for every condition and arm that is not as taught: share of the episodes that succeed, over the runs."""
+    """A row for every condition and arm that is not as taught: share of the episodes that succeed, over the runs.
+
+    Runs without a policy succeed on none of the arms of the others.
+    """
+    arms = dict.fromkeys(test.test for run in study.runs for test in transfers(run))
     return pd.DataFrame([
-        {'condition': condition, 'change': test.test.removeprefix(TRANSFER), 'run': run.participant,
-         'success': float(test.success.mean())}
-        for condition in study.conditions for run in study.of(condition) for test in transfers(run)],
+        {'condition': condition, 'change': arm.removeprefix(TRANSFER), 'run': run.participant,
+         'success': float(run.tests[arm].success.mean()) if run.episodes else 0.0}
+        for condition in study.conditions for run in study.of(condition) for arm in arms
+        if arm in run.tests or not run.episodes],
         columns=['condition', 'change', 'run', 'success']).groupby(
             ['condition', 'change'], sort=False, as_index=False).agg(runs=('run', 'size'), success=('success', 'mean'))
 
