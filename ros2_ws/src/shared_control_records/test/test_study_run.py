@@ -14,6 +14,7 @@
 
 """Doing the runs of a study: killed half-way, on a full disk, on a Ray cluster."""
 
+import json
 import multiprocessing
 import os
 import signal
@@ -29,7 +30,7 @@ from shared_control_learning.episode_table import read_rows
 from shared_control_records.study.folder import StudyFolder
 from shared_control_records.study.plan import load_plan
 from shared_control_records.study.pool import on_ray, on_this_machine
-from shared_control_records.study.result import is_done, load_result
+from shared_control_records.study.result import RESULT, TESTS, is_done, load_result
 from shared_control_testing.studies import made_study
 
 PLAN = """
@@ -115,6 +116,39 @@ def test_a_damaged_result_is_named(plan, tmp_path, monkeypatch, capsys, content)
     monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(tmp_path / 'study')])
     assert main() == 2
     assert f'remove {result} and run the study again' in capsys.readouterr().err
+
+
+def test_runs_that_cannot_be_read_are_named_beside_the_table_of_the_others(plan, tmp_path, monkeypatch, capfd):
+    plan.write_text(PLAN.replace('episodes: 2', 'episodes: 9'))
+    folder = made_study(tmp_path / 'study', plan)
+    del folder._lock
+    first, second = (folder.run(job) for job in load_plan(plan).jobs)
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(folder.path), '--json', '-'])
+    assert main() == 0
+    said = json.loads(capfd.readouterr().out)
+    assert (said['cells'][0]['runs'], said['left_out']) == (2, [])
+
+    whole = (first / TESTS).read_bytes()
+    for damage in (lambda: (first / TESTS).write_bytes(whole[:len(whole) // 2]), (first / TESTS).unlink):
+        damage()
+        assert main() == 2
+        out, error = capfd.readouterr()
+        said = json.loads(out)
+        assert said['cells'][0]['runs'] == 1
+        assert '1 of 2 runs cannot be read' in error and f'remove {first / RESULT} and run the study again' in error
+        [left_out] = said['left_out']
+        assert 'runs/autonomous/p01 is damaged' in left_out and str(tmp_path) not in left_out
+        assert str(second) not in error
+
+
+def test_a_study_of_people_names_them_too(plan, tmp_path, monkeypatch, capfd):
+    plan.write_text('participants: {real: 1, consent: "Yes?"}\nconditions: {autonomous: {episodes: 9, taught: false}}')
+    folder = made_study(tmp_path / 'study', plan)
+    del folder._lock
+    monkeypatch.setattr('sys.argv', ['shared-control', 'study', str(plan), '--output', str(folder.path)])
+    assert main() == 0
+    (folder.run(load_plan(plan).jobs[0]) / TESTS).unlink()
+    assert main() == 2 and '1 of 1 runs cannot be read' in capfd.readouterr().err
 
 
 def test_what_is_finished_before_the_disk_is_full_stays_usable(plan, tmp_path, monkeypatch, capfd):

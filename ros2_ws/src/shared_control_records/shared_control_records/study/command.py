@@ -28,7 +28,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
         commands, 'study', run, summary='run a study: participants x conditions, from one YAML file',
         description='Run a study as its plan says: teach and test policies of simulated participants and those that '
                     'nobody teaches, or lead a real participant through their part. Stopped, by whatever, it goes on '
-                    'where it was when the same command is given again.',
+                    'where it was when the same command is given again. The exit code is 2 when a run has failed or what '
+                    'is left of it cannot be read, and 130 when it was stopped.',
         examples=['shared-control study studies/quick.yaml',
                   'shared-control study studies/baselines.yaml --quick --json -',
                   'shared-control study studies/people.yaml --participant 3',
@@ -108,13 +109,19 @@ def _run(args: argparse.Namespace) -> int:
     print(f'{len(plan.participants)} {who} participants x {len(plan.conditions)} conditions in {folder.path}',
           file=prints, flush=True)
     do_runs(folder, plan, args.workers, args.ray, prints)
+    from ..study_report.measures import load_study  # late: what learns takes seconds to load
+    study = load_study(folder)
     if plan.people is None:
         from ..study_report.cells import as_text, cell_rows
-        from ..study_report.measures import load_study
-        rows = cell_rows(load_study(folder))
+        rows = cell_rows(study)
         print(as_text(rows), file=prints)
         if args.quick:
             print('The quick form tests once, so nobody can be skilled, which takes two tests in a row.', file=prints)
-        write_json({'tutors': 'simulated', 'seed': plan.seed, 'cells': rows}, args.json)
+        write_json({'tutors': 'simulated', 'seed': plan.seed, 'cells': rows,
+                    'left_out': list(map(folder.without_path, study.problems))}, args.json)
     print(f'The report:\n  shared-control report {folder.path}', file=prints)
+    if study.problems:
+        problems = ''.join(f'\n  {problem}' for problem in study.problems)
+        raise ValueError(f'{len(study.problems)} of {len(plan.jobs)} runs cannot be read, and no figure counts them:'
+                         f'{problems}')
     return 0

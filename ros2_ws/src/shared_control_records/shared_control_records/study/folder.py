@@ -59,6 +59,10 @@ class StudyFolder:
         """The folder of the session in which a real participant teaches."""
         return self.person(job.participant) / job.condition.name
 
+    def without_path(self, text: str) -> str:
+        """A text for what is passed on: whose machine the folder was on is nobody's business."""
+        return text.replace(f'{self.path}/', '')
+
     def begin(self, plan_file: Path, number: int | None = None, quick: bool = False,
               claims: bool = True) -> Plan:
         """Make the folder, or take it up again; gives the plan.

@@ -95,8 +95,10 @@ def load_result(folder: Path) -> RunResult | None:
     """The result in a run's folder; None when the run is not done.
 
     Raises:
-        ResultError: what is there is damaged.
+        ResultError: what is there is damaged, or a part of it is missing.
     """
+    if not is_done(folder):
+        return None
     try:
         content = json.loads((folder / RESULT).read_text(encoding='utf-8'))
         with np.load(folder / TESTS, allow_pickle=False) as packed:
@@ -105,8 +107,6 @@ def load_result(folder: Path) -> RunResult | None:
         tests = {name: ProtocolResult(name, **{
             key: arrays[f'{name}/{key}'] for key in ('seconds', *TRACKS, 'fallen', 'success')}) for name in names}
         return _RUN_RESULT.validate_python({**content, 'tests': tests})
-    except FileNotFoundError:
-        return None
     except Exception as error:  # a damaged zip or JSON file raises errors of many kinds
         raise _damaged(folder, error) from error
 

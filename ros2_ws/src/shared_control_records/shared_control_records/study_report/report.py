@@ -100,8 +100,7 @@ def _page(folder: StudyFolder, study: Study, tables: dict[str, pd.DataFrame], dr
     return environment.from_string(_PAGE.read_text(encoding='utf-8')).render(
         css=Markup(STYLE_SHEET.read_text(encoding='utf-8')), study=study, simulated=simulated, figures=drawn,
         turnout=None if simulated else turnout(folder, study.plan),
-        # The report is passed on: whose machine it was is nobody's business.
-        problems=[problem.replace(f'{folder.path}/', '') for problem in study.problems],
+        problems=list(map(folder.without_path, study.problems)),
         headlines=_headlines(study), conditions=conditions,
         measures=list(dict.fromkeys(row['measure'] for row in conditions)), comparisons=comparisons, groups=groups,
         reduction=_reduction(study), thesis_reduction=THESIS_REDUCTION,
