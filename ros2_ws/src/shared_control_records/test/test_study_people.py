@@ -415,7 +415,7 @@ def test_the_experimenter_notes_while_somebody_takes_part_and_leaves_them_out(st
 
 
 def taught_session(study, *rows, successes=None):
-    """A session of participant 1 that came to its end: rows are number, phase and verdict of 10 s and 1 s of learning."""
+    """A session of participant 1 that came to its end: rows are number, phase, verdict; of 10 s and 1 s of learning."""
     folder, plan = study
     job = next(job for job in plan.jobs if job.name == 'coached/p01')
     session = SessionFolder(folder.session(job))

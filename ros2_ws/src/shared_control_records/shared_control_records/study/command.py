@@ -28,8 +28,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
         commands, 'study', run, summary='run a study: participants x conditions, from one YAML file',
         description='Run a study as its plan says: teach and test policies of simulated participants and those that '
                     'nobody teaches, or lead a real participant through their part. Stopped, by whatever, it goes on '
-                    'where it was when the same command is given again. The exit code is 2 when a run has failed or what '
-                    'is left of it cannot be read, and 130 when it was stopped.',
+                    'where it was when the same command is given again. The exit code is 2 when a run has failed or '
+                    'its result cannot be read, and 130 when it was stopped.',
         examples=['shared-control study studies/quick.yaml',
                   'shared-control study studies/baselines.yaml --quick --json -',
                   'shared-control study studies/people.yaml --participant 3',

@@ -125,8 +125,8 @@ def seed_of_tests(plan: Plan, job: Job) -> int:
 def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     """Test what a person has taught. The person said when; skilled is who then passed the session's test.
 
-    Who taught to the end and left no policy, since every episode was discarded or they said that they were done before the
-    first, has a run like everybody else: of no episodes and without tests, which the report counts as lost.
+    Who taught to the end and left no policy, since every episode was discarded or they were done before the first, has
+    a run like everybody else: of no episodes and without tests, which the report counts as lost.
 
     Raises:
         ValueError: table and policy of the session do not belong together, or one of its files is damaged.
@@ -141,7 +141,8 @@ def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
                          f'{"missing" if episodes else "there"}; take both from a back-up')
     test = load_test(session.test) if episodes else None
     if episodes and test is None:
-        raise FileNotFoundError(f'{session.test} is missing: shared-control session --resume {session.path} tests again')
+        raise FileNotFoundError(
+            f'{session.test} is missing: shared-control session --resume {session.path} tests again')
     passed = test is not None and test.successes >= len(test.episodes) * SUCCESSES_NEEDED / TEST_EPISODES
     return RunResult(
         **describe(job, simulated=False), first_pass=None, skilled=len(episodes) if passed else None,
@@ -160,7 +161,7 @@ def run_tests(plan: Plan, job: Job, policy: Path) -> dict[str, ProtocolResult]:
 
 
 def read_table(path: Path) -> list[dict[str, Any]]:
-    """Episodes of teaching in an ``episodes.csv``, those that were discarded or broken off included; numbers as numbers.
+    """Episodes of teaching in an ``episodes.csv``, also those discarded or broken off; numbers as numbers.
 
     Raises:
         ValueError: it is no table of episodes; the message names it.

@@ -15,8 +15,8 @@
 """A study cell by cell: each condition with each group of tutors, in the figures that the field reports.
 
 Every figure has its 95 % interval (:mod:`.statistics`). Runs that never got there are censored where times are told,
-and count like all others elsewhere; what is not known of one of them is not known of the row, which would else be of the
-others alone. Conditions are compared with :data:`AGAINST`, in pairs of the same seed.
+and count like all others elsewhere; what is not known of one of them is not known of the row, which would else be of
+the others alone. Conditions are compared with :data:`AGAINST`, in pairs of the same seed.
 """
 
 import math
@@ -119,7 +119,7 @@ def _success(run: RunResult, test: str | None) -> float:
 
 
 def _error(study: Study, run: RunResult, test: str | None) -> float:
-    """Mean |position error| over the last 3 s, mm; a ball that fell, or that no policy moved, lies where the tray ends."""
+    """Mean |position error| over the last 3 s, mm; a ball that fell, or had no policy yet, lies where the tray ends."""
     if test is None:
         return 1e3 * study.lost(run)
     if test not in run.tests:

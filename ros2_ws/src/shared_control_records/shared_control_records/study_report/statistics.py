@@ -38,8 +38,8 @@ ENOUGH = 5
 class Estimate:
     """A number and its 95 % interval; inf where it was never reached.
 
-    nan where there is nothing to tell it from: an interval of fewer than :data:`ENOUGH`, or one without width, would look
-    certain.
+    nan where there is nothing to tell it from: an interval of fewer than :data:`ENOUGH`, or one without width, would
+    look certain.
     """
 
     value: float
