@@ -42,7 +42,8 @@ def made_study(path: Path, plan: Path, seed: int = 0, missing: int = 0) -> Study
 def made_result(job: Job, random: np.random.Generator, tested: tuple[str, ...] = ()) -> RunResult:
     """A run that is done."""
     good = GOOD[job.condition.preset] > random.random()
-    episodes = int(random.integers(3, 9)) if good and job.condition.taught else job.condition.episodes - 2 * good
+    quick = good and job.condition.taught
+    episodes = int(random.integers(3, 9)) if quick else max(1, job.condition.episodes - 2 * good)
     tests = [_test('randomized', random, good, 20, 10.0), _test('perturbation', random, good, 1, 30.0),
              *(_test(f'trajectory {frequency:g} Hz', random, good, 1, 20.0) for frequency in FREQUENCIES)]
     if 'transfer' in tested:
