@@ -5,10 +5,6 @@ import time
 import pytest
 from shared_control_bringup import parameters
 from shared_control_records.bag.reader import read_bag
-from teleop_key_node.keyboard import HeldKeys
-
-NO_REPETITION = 8 * HeldKeys.REPEATS_WITHIN
-"""Sooner, a key that is pressed again would be the terminal's repetition; s, on a busy machine, too."""
 
 
 def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summary_of):
@@ -23,21 +19,16 @@ def test_a_person_teaches_from_a_terminal(start_session, unpaced, tmp_path, summ
     session.expect('PRACTICE')
     session.type(b'q')
     session.expect('the teaching has not begun')
-    time.sleep(NO_REPETITION)
     session.type(b'\r')
     session.expect('TEACH')
     session.expect('time left')
     session.type(b'\x1b[D')
     session.expect('+5.0')
-    time.sleep(NO_REPETITION)
-    session.type(b'a')
-    session.expect('+10.0')
+    session.press_again(b'a', '+10.0')
     session.expect('left side down')
     time.sleep(0.5)  # the moment is held for a while
-    session.type(b'q')
-    session.expect('Press q again')
-    time.sleep(NO_REPETITION)
-    session.type(b'q')
+    session.press_again(b'q', 'Press q again')
+    session.press_again(b'q', 'go on teaching')
     session.expect('Writing the report')
     session.process.wait(120)
     assert session.process.returncode == 0, session.shown[-3000:]
