@@ -28,6 +28,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import TUTOR_NAMES
+from shared_control_bringup import parameters
 from shared_control_bringup.graph import Role, named, nodes_of, overrides
 from shared_control_bringup.launching import (
     common_arguments,
@@ -38,12 +39,17 @@ from shared_control_bringup.launching import (
     view,
     view_argument,
 )
+from shared_control_bringup.parameter_check import check_values, refuse_overridden
 from shared_control_bringup.settings import TUTORS, Settings
 from shared_control_ros.host_and_port import host_and_port
 
 
 def start_nodes(context: LaunchContext) -> list[Node]:
-    """The nodes of the session that the arguments describe."""
+    """The nodes of the session that the arguments describe.
+
+    Raises:
+        ValueError: an argument or the parameter file cannot be used.
+    """
     settings = Settings(
         tutor=LaunchConfiguration('tutor').perform(context),
         profile=LaunchConfiguration('profile').perform(context),
@@ -56,6 +62,10 @@ def start_nodes(context: LaunchContext) -> list[Node]:
         page=host_and_port(LaunchConfiguration('page').perform(context))).resolved()
     by_hand = settings.tutor == 'keyboard'
     given = overrides(settings, Path(LaunchConfiguration('output').perform(context)), shows_screen=by_hand)
+    params_file = Path(LaunchConfiguration('params_file').perform(context))
+    values = parameters.read(params_file.read_bytes(), params_file)
+    check_values(values, params_file)
+    refuse_overridden(values, given, params_file)
     return [graph_node(node.name, parameters=given[node.name], output='own_log' if by_hand else 'screen')
             for node in nodes_of(settings.tutor)]
 

@@ -75,8 +75,7 @@ def refuse_overridden(given: dict[str, dict[str, Any]], taken: dict[str, dict[st
             if wanted[name] not in (values[name], defaults.get(node, {}).get(name)):
                 raise ValueError(
                     f'{path}: parameter {name!r} of {node} is {wanted[name]!r}, but a session gives it '
-                    f'{values[name]!r}, by its task and its options (shared-control session --help): use these, and '
-                    'leave it out')
+                    f'{values[name]!r}, by its task and its options: use these, and leave it out')
 
 
 def _problem(declaration: Declaration, value: Any) -> str:

@@ -37,7 +37,8 @@ FILES = sorted((PACKAGE / 'launch').glob('*.launch.py'))
 LAUNCHING = ast.parse((PACKAGE / 'shared_control_bringup' / 'launching.py').read_text())
 ARGUMENTS = {
     'tutor': 'keyboard', 'profile': 'expert', 'task': 'balance', 'preset': '', 'physics': 'bullet', 'episodes': '0',
-    'minutes': '45', 'seed': '0', 'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node'}
+    'minutes': '45', 'seed': '0', 'page': '127.0.0.1:8088', 'output': 'out/session', 'node': 'torque_ctrl_node',
+    'params_file': str(DEFAULTS)}
 HELPERS = {item.name: item for item in LAUNCHING.body if isinstance(item, ast.FunctionDef)}
 
 
@@ -154,6 +155,12 @@ def test_nodes_and_their_parameters_exist(started):
             if (PACKAGES / package).is_dir():
                 assert name in console_scripts(package)
                 assert set(given_to(node)) <= {'use_sim_time', *declared_parameters(name)}, name
+
+
+def test_a_session_refuses_what_it_would_not_go_by(started, tmp_path):
+    (tmp_path / 'mine.yaml').write_text('torque_ctrl_node: {ros__parameters: {moment_limit: 5.0}}')
+    with pytest.raises(ValueError, match="parameter 'moment_limit' of torque_ctrl_node is"):
+        started('session.launch.py', **{**ARGUMENTS, 'params_file': str(tmp_path / 'mine.yaml')})
 
 
 @pytest.mark.parametrize('tutor', TUTORS)
