@@ -37,15 +37,25 @@ SUSPECTS = ('ROS_', 'RMW_', 'FASTRTPS_', 'FASTDDS_', 'CYCLONEDDS_', 'PYTHONPATH'
 """Beginnings of the names of variables that ROS goes by."""
 
 
+def ros_domain() -> int:
+    """The ROS domain of this process and of those that it starts.
+
+    Raises:
+        ValueError: ``ROS_DOMAIN_ID`` is none.
+    """
+    domain = os.environ.get('ROS_DOMAIN_ID', '').strip() or '0'
+    if not domain.isdecimal() or int(domain) not in DOMAINS:
+        raise ValueError(f'ROS_DOMAIN_ID is {domain!r}: it must be a number from 0 to {DOMAINS[-1]}')
+    return int(domain)
+
+
 class Neighbours:
     """The look, begun when this is made and over when it is left. :meth:`refuse` waits for what it finds."""
 
     def __init__(self) -> None:
         from shared_control.processes import leave_with_the_parent
         from shared_control_ros.processes import node_environment
-        domain = os.environ.get('ROS_DOMAIN_ID', '').strip() or '0'
-        if not domain.isdecimal() or int(domain) not in DOMAINS:
-            raise ValueError(f'ROS_DOMAIN_ID is {domain!r}: it must be a number from 0 to {DOMAINS[-1]}')
+        ros_domain()
         self._environment = node_environment()
         self._process = subprocess.Popen(
             [sys.executable, '-m', __name__], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

@@ -30,6 +30,8 @@ from shared_control.processes import leave_with_the_parent
 from shared_control_ros.processes import node_environment, node_module
 from shared_control_ros.readiness import DONE, READY, READY_FD
 
+from .neighbours import ros_domain
+
 REAL_TIME_PRIORITY = 49
 """Priority of the threads of a node in the control loop (SCHED_RR), where `ulimit -r` allows it. The loop's own thread
 goes one above them (:mod:`shared_control_ros.real_time`): to 50, the priority of ros2_control."""
@@ -92,7 +94,8 @@ class NodeProcess:
         self.starts += 1
         self.started = time.monotonic()
         self._starts_confined = confined
-        self._close_pipe()
+        if self._pipe is not None:
+            os.close(self._pipe)
         self._pipe, theirs = os.pipe()
         self._is_starting, self._has_done, self.ready_since = True, False, math.inf
         environment = {**node_environment(), **self._environment, READY_FD: str(theirs)}
@@ -160,11 +163,6 @@ class NodeProcess:
         if is_ready:
             self.ready_since = time.monotonic()
         return is_ready
-
-    def _close_pipe(self) -> None:
-        if self._pipe is not None:
-            os.close(self._pipe)
-            self._pipe = None
 
     def exit_code(self) -> int | None:
         """None while it runs."""
@@ -237,6 +235,5 @@ def _cores() -> tuple[int, list[int]]:
     Sessions run side by side in domains of their own, and one core has no room for two loops at 1 kHz.
     """
     cores = sorted(os.sched_getaffinity(0))
-    domain = os.environ.get('ROS_DOMAIN_ID', '').strip()
-    loop = cores.pop(-1 - (int(domain) if domain.isdecimal() else 0) % len(cores))
+    loop = cores.pop(-1 - ros_domain() % len(cores))
     return loop, cores

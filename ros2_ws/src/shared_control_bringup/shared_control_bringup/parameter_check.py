@@ -23,7 +23,7 @@ from shared_control.robot.spec_file import is_path, load_robot
 from shared_control_ros.declarations import Declaration, declarations
 
 from .graph import ALL_NODES
-from .parameters import ANY_NODE, DEFAULTS, read
+from .parameters import ANY_NODE, over_defaults
 
 OF_ROS = ('use_sim_time', 'start_type_description_service', 'qos_overrides', 'qos_overrides.*')
 """Parameters that every node has of rclpy, as patterns."""
@@ -68,7 +68,7 @@ def refuse_overridden(given: dict[str, dict[str, Any]], taken: dict[str, dict[st
     Raises:
         ValueError: the session has another value for a parameter; the message names all.
     """
-    defaults = read(DEFAULTS.read_bytes(), DEFAULTS)
+    defaults = over_defaults({})
     for node, values in taken.items():
         wanted = {**given.get(ANY_NODE, {}), **given.get(node, {})}
         for name in values.keys() & wanted.keys():

@@ -163,7 +163,7 @@ class LiveDesk:
     def do(self, command: str, value: Any) -> None:
         """See :class:`Desk`."""
         if command == 'pause':
-            self._requests.toggle_pause()
+            self._requests.toggle_pause(self._observer.stamp_ns)
         elif command == 'repeat':
             if self._requests.paused:
                 self._tell('It is paused: go on first.')

@@ -126,7 +126,7 @@ class Panel:
         elif stroke is Stroke.FINISH:
             self._finish()
         elif stroke is Stroke.PAUSE:
-            self.requests.toggle_pause()
+            self.requests.toggle_pause(self._observer.stamp_ns)
         elif stroke in _VERDICTS and self._scene.offers_verdicts:
             self._judge.say(self._scene, _VERDICTS[stroke])
         elif stroke is Stroke.REDRAW:

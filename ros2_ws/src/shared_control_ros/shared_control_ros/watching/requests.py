@@ -47,7 +47,7 @@ class Requests:
         self._pending: dict[Future, tuple[Client, float]] = {}
         self.paused = False
         """Whether the simulator has been paused from here."""
-        self._stamp_ns = self._paused_ns = 0
+        self._paused_ns = 0
         self.ending = False
         """Whether the teaching ends with this episode, because it was asked for here."""
 
@@ -74,10 +74,10 @@ class Requests:
         """Practice is over: teach."""
         self._call(self._start, Trigger.Request(), lambda response: self._tell(response.message), HINT)
 
-    def toggle_pause(self) -> None:
-        """Pause the simulator, or go on."""
+    def toggle_pause(self, stamp_ns: int) -> None:
+        """Pause the simulator, or go on; ``stamp_ns``: the newest simulation time."""
         pause = not self.paused
-        self._paused_ns = self._stamp_ns
+        self._paused_ns = stamp_ns
 
         def answered(response: SetBool.Response) -> None:
             if response.success:
@@ -92,7 +92,6 @@ class Requests:
             phase: of the lesson; None when it is not known.
             stamp_ns: the newest simulation time.
         """
-        self._stamp_ns = stamp_ns
         if stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
             self.paused = False
         if phase not in (None, 'teach', 'learn'):
