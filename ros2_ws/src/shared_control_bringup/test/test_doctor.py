@@ -61,7 +61,6 @@ def test_a_healthy_machine(domain_id):
 @pytest.mark.parametrize(('name', 'value', 'level', 'code'), [
     ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'OFF', 'FAULT', 1),
     ('FASTRTPS_DEFAULT_PROFILES_FILE', '/no/profile.xml', 'FAULT', 1),
-    ('ROS_DOMAIN_ID', 'mine', 'FAULT', 1),
     ('RMW_IMPLEMENTATION', 'rmw_cyclonedds_cpp', 'note', 0)])
 def test_variables_of_another_shell(domain_id, monkeypatch, name, value, level, code):
     if level == 'note':
@@ -71,6 +70,12 @@ def test_variables_of_another_shell(domain_id, monkeypatch, name, value, level, 
     found, _, remedy = line_of(lines, f'{name}: ')
     assert (ended, found) == (code, level)
     assert f'unset {name}' in remedy
+
+
+def test_a_domain_that_is_none_is_one_fault(domain_id):
+    code, lines = examine(replace(HEALTHY, variables={'ROS_DOMAIN_ID': 'mine'}))
+    [fault] = [line for line in lines if line.startswith('FAULT')]
+    assert code == 1 and "ROS_DOMAIN_ID is 'mine': it must be a number from 0 to 232" in fault
 
 
 def test_variables_of_the_page(domain_id, monkeypatch):

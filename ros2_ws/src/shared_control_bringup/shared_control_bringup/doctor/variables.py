@@ -21,7 +21,7 @@ from pathlib import Path
 
 from shared_control_ros.processes import node_environment
 
-from shared_control_bringup.neighbours import DOMAINS, SUSPECTS
+from shared_control_bringup.neighbours import SUSPECTS
 
 from .finding import Finding, Level
 
@@ -56,6 +56,3 @@ def _wrong(given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     keystore = given.get('ROS_SECURITY_KEYSTORE', '')
     if given.get('ROS_SECURITY_ENABLE') == 'true' and not Path(keystore).is_dir():
         yield 'ROS_SECURITY_ENABLE', f'there is no keystore {keystore!r} (ROS_SECURITY_KEYSTORE)'
-    domain = given.get('ROS_DOMAIN_ID', '').strip() or '0'
-    if not domain.isdecimal() or int(domain) not in DOMAINS:
-        yield 'ROS_DOMAIN_ID', f'it must be a number from 0 to {DOMAINS[-1]}'
