@@ -67,7 +67,7 @@ class TerminalSession(Session, Terminal):
         for _ in range(20):
             time.sleep(NO_REPETITION)
             self.type(key)
-            answered_by = time.monotonic() + 3.0
+            answered_by = time.monotonic() + 10.0  # a screen that is late must not have it pressed twice
             while time.monotonic() < answered_by:
                 if self._has_shown(text):
                     return
