@@ -33,6 +33,13 @@ def qos(depth: int = 1) -> QoSProfile:
         reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.VOLATILE)
 
 
+def qos_unreliable(depth: int = 1) -> QoSProfile:
+    """Best effort: of a subscription, for which every publisher will do, a reliable one, too."""
+    return QoSProfile(
+        history=HistoryPolicy.KEEP_LAST, depth=depth,
+        reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE)
+
+
 def qos_latched(depth: int = 100) -> QoSProfile:
     """Reliable and transient local, for the scalars of learning, which a late joiner must see."""
     return QoSProfile(

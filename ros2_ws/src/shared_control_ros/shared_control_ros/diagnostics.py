@@ -21,7 +21,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 from . import contract
-from .fast_loop import Polled, follow_clock
+from .fast_loop import Polled, follow_clock, warn_of_unheard
 
 PATIENCE = 10.0
 """The topic that a node cannot do without may have no publisher for so long, s: nodes start, and start anew."""
@@ -89,6 +89,7 @@ class Diagnostics:
         follow_clock(self._node)
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._publisher.publish(message)
+        warn_of_unheard(self._node)
 
     def _missing(self) -> dict[str, str]:
         if self._needs is None:

@@ -27,6 +27,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
@@ -55,17 +56,19 @@ class _NotForTheExecutor(CallbackGroup):
 class Polled:
     """A subscription whose messages are taken by hand.
 
-    ``depth`` is how many messages may wait; with 1 a take gives the newest. ``raw`` gives serialized bytes.
+    ``depth`` is how many messages may wait; with 1 a take gives the newest. ``raw`` gives serialized bytes. ``warns``:
+    of publishers that it cannot hear (:func:`warn_of_unheard`).
     """
 
     def __init__(self, node: Node, topic: Topic, depth: int = 1, raw: bool = False,
-                 qos_profile: QoSProfile | None = None):
+                 qos_profile: QoSProfile | None = None, warns: bool = True):
         self._node = node
         self._type = topic.msg_type
         self._raw = raw
         self._subscription = node.create_subscription(
             topic.msg_type, topic.name, lambda _: None, qos_profile or qos(depth),
-            callback_group=_NotForTheExecutor(), raw=raw)
+            callback_group=_NotForTheExecutor(), raw=raw,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=warns))
         self._handle = self._subscription.handle
         self._wait_set = rclpy_implementation.WaitSet(1, 0, 0, 0, 0, 0, node.context.handle)
 
@@ -137,6 +140,25 @@ def follow_clock(node: Node) -> None:
         taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
         if taken is not None:
             subscription.callback(taken[0])
+
+
+def warn_of_unheard(node: Node) -> None:
+    """Log which publishers polled subscriptions cannot hear, for their quality of service or their type.
+
+    rclpy says so by an event, which its executor would take; it leaves what is polled alone.
+    """
+    events = [waitable for waitable in node.waitables
+              if isinstance(waitable, EventHandler) and isinstance(waitable.callback_group, _NotForTheExecutor)]
+    if not events:
+        return
+    wait_set = rclpy_implementation.WaitSet(0, 0, 0, 0, 0, len(events), node.context.handle)
+    wait_set.clear_entities()
+    for event in events:
+        event.add_to_wait_set(wait_set)
+    wait_set.wait(0)
+    for event in events:
+        if event.is_ready(wait_set) and (news := event.take_data()) is not None:
+            event.callback(news)
 
 
 class Background:

@@ -14,12 +14,15 @@
 
 """What a node reports of itself."""
 
+from dataclasses import replace
+
 import pytest
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.fast_loop import Polled
 from shared_control_ros.stamps import set_ns, to_ns
 
 PERIOD_NS = 20_000_000
@@ -50,3 +53,22 @@ def test_stamps_are_simulation_time_though_the_node_serves_no_clock(observer, no
     observer.spin(reported)
     late = now_ns - to_ns(heard[-1].header.stamp)
     assert late < 25 * PERIOD_NS, f'{late * 1e-9} s late'
+
+
+def test_a_publisher_that_cannot_be_heard_is_named(observer, node, capfd):
+    """As rclpy does by its executor, which passes over what is polled."""
+    Polled(node, contract.BALL)
+    camera = observer.publisher(replace(contract.BALL, qos=contract.qos_unreliable()))
+    diagnostics = Diagnostics(node, 0.02)
+    said = ''
+
+    def warned():
+        nonlocal said
+        diagnostics.publish({})
+        said += capfd.readouterr().err
+        return "'ball', offering incompatible QoS. No messages will be received from it" in said
+
+    observer.spin(warned)
+    diagnostics.publish({})
+    assert 'incompatible' not in capfd.readouterr().err, 'once'
+    observer.node.destroy_publisher(camera)

@@ -16,6 +16,7 @@
 
 import signal
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -297,19 +298,28 @@ class TestSafety:
         assert self.ask(robot_at_rest, 'enable', SetBool.Request(data=False)).success
         self.wait_for_silence(robot_at_rest)
 
-    @pytest.mark.parametrize('how', ['service', 'topic'])
+    @pytest.mark.parametrize('how', ['service', contract.EMERGENCY_STOP.qos, contract.qos_unreliable(10)],
+                             ids=['service', 'topic', 'unreliable topic'])
     def test_the_emergency_stop_wins_until_it_is_reset(self, robot_at_rest, how):
         assert self.enable(robot_at_rest).success
         reports = robot_at_rest.observer.listen(contract.DIAGNOSTICS)
         if how == 'service':
             assert self.ask(robot_at_rest, 'emergency_stop').success
         else:
-            publisher = robot_at_rest.observer.publisher(contract.EMERGENCY_STOP)
-            robot_at_rest.observer.spin(lambda: publisher.get_subscription_count())
-            publisher.publish(Bool(data=True))
-            publisher.publish(Bool(data=False))
-        robot_at_rest.observer.spin(lambda: self.answers(robot_at_rest) is not None and any(
-            r.status[0].level == DiagnosticStatus.ERROR and 'emergency stop' in r.status[0].message for r in reports))
+            publisher = robot_at_rest.observer.publisher(replace(contract.EMERGENCY_STOP, qos=how))
+
+        def stopped():
+            if how != 'service':  # again and again: the first of an unreliable one may be lost
+                publisher.publish(Bool(data=True))
+                publisher.publish(Bool(data=False))
+            self.answers(robot_at_rest)
+            return any(r.status[0].level == DiagnosticStatus.ERROR and 'emergency stop' in r.status[0].message
+                       for r in reports)
+
+        robot_at_rest.observer.spin(stopped)
+        if how != 'service':
+            robot_at_rest.observer.node.destroy_publisher(publisher)
+            self.answers(robot_at_rest, 20)  # it has heard all that was sent
         refused = self.enable(robot_at_rest)
         assert not refused.success and 'reset_emergency_stop first' in refused.message
         assert self.ask(robot_at_rest, 'reset_emergency_stop').success

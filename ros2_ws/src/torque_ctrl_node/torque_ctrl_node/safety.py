@@ -69,7 +69,11 @@ class Safety:
         self._enables_itself = enables_itself and not self.is_stopped
         self._enable_name = node.resolve_service_name(contract.ENABLE_SERVICE)
         self._reset_name = node.resolve_service_name(contract.RESET_EMERGENCY_STOP_SERVICE)
-        self._stop_messages = Polled(node, contract.EMERGENCY_STOP, depth=contract.EMERGENCY_STOP.qos.depth)
+        # However it is published: drivers of buttons may offer best effort, which a reliable subscription never gets.
+        depth = contract.EMERGENCY_STOP.qos.depth
+        self._stop_messages = (
+            Polled(node, contract.EMERGENCY_STOP, depth, warns=False),
+            Polled(node, contract.EMERGENCY_STOP, qos_profile=contract.qos_unreliable(depth)))
         node.create_service(SetBool, contract.ENABLE_SERVICE, self._on_enable)
         node.create_service(Trigger, contract.EMERGENCY_STOP_SERVICE, self._on_stop_request)
         node.create_service(Trigger, contract.RESET_EMERGENCY_STOP_SERVICE, self._on_reset)
@@ -93,9 +97,10 @@ class Safety:
 
     def hear(self) -> None:
         """Look whether somebody has published an emergency stop; false means nothing: only the service ends one."""
-        while (message := self._stop_messages.take()) is not None:
-            if message.data and not self.is_stopped:
-                self._emergency_stop()
+        for messages in self._stop_messages:
+            while (message := messages.take()) is not None:
+                if message.data and not self.is_stopped:
+                    self._emergency_stop()
 
     def end_torques(self) -> None:
         """Disable; the arm is to be brought to rest if it was moved."""
