@@ -73,3 +73,18 @@ class TestInANamespace:
         for wrench in wrenches:
             assert to_ns(wrench.header.stamp) % 10_000_000 == 0
             assert abs(newest - to_ns(wrench.header.stamp)) < 1_000_000_000
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['-p', 'moment_limit:=5.0'], "torque_ctrl_node takes no '-p' 'moment_limit:=5.0': parameters and remappings"),
+    (['--ros-args', 'moment_limit:=5.0'], "ROS cannot begin with these arguments: ['moment_limit:=5.0']"),
+    (['--ros-args', '-p', 'moment_limit=5.0'], 'moment_limit=5.0'),
+    (['--ros-args', '--params-file', 'nowhere.yaml'], 'Error opening YAML file'),
+])
+def test_arguments_that_mean_nothing_are_refused_in_a_line(domain_id, arguments, said):
+    """The controller went on with its defaults, or ended with a traceback."""
+    node = subprocess.run([Path(sys.executable).parent / 'torque_ctrl_node', *arguments], stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=60)
+    assert node.returncode == 2
+    line = node.stderr.splitlines()[-1]
+    assert line.startswith('error: ') and said in line and 'Traceback' not in node.stderr

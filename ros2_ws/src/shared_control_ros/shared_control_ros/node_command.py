@@ -20,9 +20,11 @@ import sys
 import textwrap
 from importlib import import_module
 from importlib.util import find_spec
+from itertools import takewhile
 from pathlib import Path
 
 from shared_control.command_line import EXAMPLES, version_text
+from shared_control.printable import shortened
 
 from .declarations import declarations_of
 
@@ -33,7 +35,8 @@ INDENT = ' ' * 8
 def run_node(module: str) -> int:
     """``main()`` of the module, or what ``--help`` and ``--version`` ask for: that waits for no import of a second.
 
-    Returns: the exit code.
+    Returns: the exit code; 2 where there are arguments that are none for ROS: whoever forgot ``--ros-args`` before
+        ``-p moment_limit:=5.0`` would have the default.
     """
     program = Path(sys.argv[0]).name
     if program == '__main__.py':  # python -m
@@ -45,6 +48,10 @@ def run_node(module: str) -> int:
     if '--version' in asked:
         print(version_text(program))
         return 0
+    if others := list(takewhile(lambda argument: argument != '--ros-args', sys.argv[1:])):
+        print(f'error: {program} takes no {" ".join(map(shortened, others))}: parameters and remappings stand behind '
+              '--ros-args, as in --ros-args -p NAME:=VALUE', file=sys.stderr)
+        return 2
     return import_module(module).main()
 
 

@@ -36,6 +36,9 @@ from .watchdog import leave_within
 LEAVE_SECONDS = 10.0
 """The middleware has once taken more than a minute to take leave; everything has been said by then, s."""
 
+_SOURCE_LINE = ', at /'
+"""What follows this in an error of rcl says where its sources raise it."""
+
 
 class Stop:
     """Set by SIGINT, SIGTERM and SIGHUP. A node looks at it in its loop, so that it can publish when it leaves."""
@@ -64,14 +67,18 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     """Initialise rclpy, build the node, run it until it ends or a signal comes, close it.
 
     Returns:
-        The exit code: 0, or 2 when a parameter or a file is unusable (said in one line on stderr).
+        The exit code: 0, or 2 when an argument, a parameter or a file is unusable (said in one line on stderr).
     """
     open_closed_streams()
     pipe = ReadyPipe()
     if args is None:
         args = sys.argv
     adopt_node_environment()  # a node that was started by hand keeps to this machine, too
-    rclpy.init(args=[*args, *_log_arguments()], signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        rclpy.init(args=[*args, *_log_arguments()], signal_handler_options=SignalHandlerOptions.NO)
+    except RuntimeError as error:  # of all of rclpy's errors here: unknown arguments, a file that is none of parameters
+        print(f'error: ROS cannot begin with these arguments: {str(error).partition(_SOURCE_LINE)[0]}', file=sys.stderr)
+        return 2
     stop = Stop()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         if number != signal.SIGHUP or signal.getsignal(number) is not signal.SIG_IGN:  # nohup
