@@ -51,6 +51,40 @@ def test_a_urdf_lies_beside_the_file(tmp_path):
     assert load_robot(str(path)).urdf == tmp_path / 'arm.urdf'
 
 
+@pytest.mark.parametrize('kind', ['continuous', 'floating'])
+def test_joints_without_limits_are_refused(tmp_path, kind):
+    urdf = panda().urdf.read_text()
+    (tmp_path / 'arm.urdf').write_text(urdf.replace('type="revolute"', f'type="{kind}"', 1))
+    path = tmp_path / 'mine.yaml'
+    path.write_text(yaml.safe_dump(yaml.safe_load(PANDA.read_text()) | {'urdf': 'arm.urdf'}))
+    with pytest.raises(RobotFileError, match=f"mine.yaml: joints: 'panda_joint1' of .*arm.urdf is {kind}; joints must"):
+        load_robot(str(path))
+
+
+def joint_of_urdf(name, kind, parent):
+    """A joint and the link behind it, which has its name."""
+    return (f'<link name="{name}"/><joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{name}"/>'
+            '<limit lower="-1" upper="1" effort="9" velocity="9"/></joint>')
+
+
+def test_the_order_of_joints_is_the_models_at_forks_too(tmp_path):
+    (tmp_path / 'forked.urdf').write_text('<robot name="forked"><link name="root"/>' + ''.join(
+        joint_of_urdf(*joint) for joint in (
+            ('z', 'revolute', 'root'), ('y', 'fixed', 'root'), ('b', 'revolute', 'y'), ('c', 'revolute', 'b'),
+            ('a', 'prismatic', 'y'))) + '</robot>')
+    joints, ones = ['a', 'b', 'c', 'z'], [1.0] * 4
+    path = tmp_path / 'forked.yaml'
+    content = {'urdf': 'forked.urdf', 'joints': joints, 'base_frame': 'root', 'tool_frame': 'c', 'torque_rate_max': 1.0,
+               'gains': {'task': {'kp': ones, 'kd': ones}}, 'q_min': [-1.0] * 4, 'home': [0.0] * 4,
+               **dict.fromkeys(('q_max', 'qd_max', 'qdd_max', 'torque_max'), ones)}
+    path.write_text(yaml.safe_dump(content))
+    assert RobotModel(load_robot(str(path))).pin_model.nq == 4
+    path = tmp_path / 'other.yaml'
+    path.write_text(yaml.safe_dump(content | {'joints': ['z', *joints[:3]]}))
+    with pytest.raises(RobotFileError, match='another order'):
+        load_robot(str(path))
+
+
 SEVEN = [1.0] * 7
 
 
@@ -62,6 +96,8 @@ SEVEN = [1.0] * 7
     ({'joints': ['panda_joint1']}, "joints: 'panda_joint2' of .* is missing: it moves, too"),
     ({'joints': ['panda_joint1'] * 7}, 'joints: a name occurs twice'),
     ({'joints': []}, 'joints: expected a list of names'),
+    ({'joints': list(reversed(panda().joints))},
+     r"joints: they are in another order than in .*, from its root on: \['panda_joint1', 'panda_joint2',"),
     ({'tool_frame': 'gripper'}, "tool_frame: .* has no link 'gripper'"),
     ({'base_frame': 'world'}, "base_frame: .* has no link 'world'"),
     ({'base_frame': 'panda_link3'}, "base_frame: .* root is 'panda_link0'"),

@@ -49,7 +49,7 @@ class RobotModel:
         if self.pin_model.nq != spec.dof:
             raise ValueError(f'{spec.urdf}: a joint is continuous; give it limits (type revolute)')
         self._data = self.pin_model.createData()
-        self._tool_id = self.pin_model.getFrameId(spec.tool_frame)
+        self._tool_id = self.pin_model.getFrameId(spec.tool_frame, pin.FrameType.BODY)  # a joint may have its name
         frames = self.pin_model.frames
         # A link hangs on a joint's frame, which hangs on the link before it.
         self._links = [

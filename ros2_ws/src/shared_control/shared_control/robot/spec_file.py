@@ -34,6 +34,8 @@ _ANGLES = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'home')
 _POSITIVE = ('qd_max', 'qdd_max', 'torque_max')
 _TEXTS = ('urdf', 'base_frame', 'tool_frame')
 _PACKAGE = 'package://'
+_ONE_NUMBER = ('revolute', 'prismatic')
+"""Types of joints whose position is one number within limits."""
 SIZE_MAX = 2**20
 """Bytes; a robot takes less than two thousand."""
 LARGEST = 1e6
@@ -174,6 +176,12 @@ class _File:
             root = ', '.join(map(repr, links - children))
             raise self._error(
                 'base_frame', f'{shortened(base_frame)} hangs on another link of {urdf}, whose root is {root}')
+        for joint in robot.iter('joint'):
+            if joint.get('type') not in (None, 'fixed', *_ONE_NUMBER):
+                raise self._error('joints', f'{shortened(joint.get("name"))} of {urdf} is {joint.get("type")}; joints '
+                                  f'must be {" or ".join(_ONE_NUMBER)}, which have limits')
+        if (order := _order(robot, base_frame)) != list(joints):
+            raise self._error('joints', f'they are in another order than in {urdf}, from its root on: {order}')
 
     def _numbers(self, key: str, value: Any, count: int) -> np.ndarray:
         """Numbers of at most ``LARGEST``, one a joint."""
@@ -226,3 +234,19 @@ class _File:
             if (numbers <= 0.0).any():
                 raise self._error(f'{key}.{part}', 'a gain is not above 0')
         return Gains(**values)
+
+
+def _order(robot: ElementTree.Element, root: str) -> list[str]:
+    """The movable joints as pinocchio orders them: from the root on, at a fork by name, each branch to its end."""
+    below: dict[str | None, list[tuple[str, str, bool]]] = {}
+    for joint in robot.findall('joint'):
+        parent, child = joint.find('parent'), joint.find('child')
+        if parent is not None and child is not None:
+            below.setdefault(parent.get('link'), []).append(
+                (str(joint.get('name')), str(child.get('link')), joint.get('type') != 'fixed'))
+    order, ahead = [], sorted(below.pop(root, []), reverse=True)
+    while ahead:
+        name, link, moves = ahead.pop()
+        order += [name] if moves else []
+        ahead += sorted(below.pop(link, []), reverse=True)
+    return order
