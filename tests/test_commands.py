@@ -103,6 +103,17 @@ def test_what_only_an_extra_brings_is_asked_for_when_it_is_used(tmp_path):
         'pip install "shared-control[export]"\n')
 
 
+def test_physics_that_only_an_extra_brings_are_asked_for(tmp_path):
+    without = 'import sys; sys.modules["mujoco"] = None; '
+    done = subprocess.run(
+        [sys.executable, '-c', f'{without}from shared_control.cli import main; sys.exit(main())', 'train', '--physics',
+         'mujoco', '--output', tmp_path / 'run'], check=False, capture_output=True, text=True)
+    assert done.returncode == 2 and done.stderr == (
+        "shared-control: the world 'mujoco' needs the module 'mujoco', which is not installed: "
+        'pip install "shared-control[mujoco]"\n')
+    assert not (tmp_path / 'run').exists()
+
+
 def test_the_shell_of_a_notebook_is_as_good_as_any(tmp_path):
     done = subprocess.run(
         [Path(sys.executable).parent / 'shared-control', 'report', tmp_path / 'nowhere'], check=False, text=True,

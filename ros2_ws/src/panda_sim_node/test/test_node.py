@@ -298,3 +298,12 @@ def test_wrong_parameters_are_named(start_node, parameters, said):
     node = start_node('panda_sim_node', **parameters)
     assert node.process.wait(60) == 2
     assert said in node.log() and 'Traceback' not in node.log()
+
+
+def test_physics_that_are_not_installed_are_named(start_node, tmp_path, monkeypatch):
+    (tmp_path / 'mujoco.py').write_text("raise ModuleNotFoundError('not here', name='mujoco')")
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+    node = start_node('panda_sim_node', physics='mujoco')
+    assert node.process.wait(60) == 2
+    assert 'error: ' in node.log() and 'pip install "shared-control[mujoco]"' in node.log()
+    assert 'Traceback' not in node.log()

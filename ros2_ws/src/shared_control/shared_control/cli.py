@@ -26,7 +26,7 @@ import sys
 from importlib.metadata import EntryPoint, entry_points
 
 from .command_line import add_parser, make_parser
-from .extras import missing
+from .extras import NotInstalled, missing
 from .printable import escaped
 from .streams import lossy_output, open_closed_streams
 
@@ -72,7 +72,7 @@ def _run() -> int:
     except ModuleNotFoundError as error:
         print(f'shared-control: {missing("the command", error)}', file=sys.stderr)
         return 2
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, NotInstalled) as error:
         print(f'shared-control: {escaped(str(error))}', file=sys.stderr)
         return 2
 

@@ -23,8 +23,12 @@ _EXTRAS = {
 }
 
 
-def missing(what: str, error: ModuleNotFoundError) -> ImportError:
+class NotInstalled(ImportError):
+    """Something is not installed; the message says what, and what brings it."""
+
+
+def missing(what: str, error: ModuleNotFoundError) -> NotInstalled:
     """The error for something that cannot be loaded because ``error`` was raised: it says what to install."""
     module = (error.name or '').partition('.')[0]
     advice = f': pip install "shared-control[{_EXTRAS[module]}]"' if module in _EXTRAS else ''
-    return ImportError(f'{what} needs the module {module!r}, which is not installed{advice}', name=error.name)
+    return NotInstalled(f'{what} needs the module {module!r}, which is not installed{advice}', name=error.name)

@@ -44,7 +44,7 @@ def load(group: str, name: str) -> Any:
 
     Raises:
         ValueError: there is nothing of that name; the message lists the names.
-        ImportError: what it needs is not installed; the message says what to install.
+        NotInstalled: what it needs is not there; the message says what to install.
     """
     kind = group.rpartition('.')[2].removesuffix('s')
     for entry_point in entry_points(group=group):

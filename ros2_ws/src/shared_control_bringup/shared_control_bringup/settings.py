@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.control.sharing import WAYS, Sharing
-from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
+from shared_control.plugins import LEARNERS, TASKS, WORLDS, load, names
 from shared_control.teaching.feedback import FEEDBACK
 from shared_control.teaching.tutors import TUTOR_NAMES
 
@@ -118,11 +118,13 @@ class Settings:
 
         Raises:
             ValueError: the preset cannot learn the task, or its moments cannot be shared like this.
+            NotInstalled: the physics is not there.
         """
         from shared_control.robot.spec_file import is_path  # late: `--help` need not wait for numpy and pinocchio
         from shared_control_learning.presets import preset_for
         chosen = preset_for(self.task, self.preset)
         chosen.check(Sharing(self.sharing))
+        load(WORLDS, self.physics)
         robot = str(Path(self.robot).expanduser().absolute()) if is_path(self.robot) else self.robot
         return replace(self, task=chosen.task.name, preset=chosen.name, robot=robot)
 

@@ -18,6 +18,7 @@ import errno
 import json
 import os
 import shutil
+import sys
 from importlib.resources import files
 
 import pytest
@@ -119,6 +120,17 @@ def test_a_refused_start_leaves_everything_as_it_was(session, tmp_path, monkeypa
         assert said in capsys.readouterr().err
     assert content(old) == before
     assert not (tmp_path / 'new').exists(), 'a half-made folder would block the next try'
+
+
+def test_physics_that_are_not_installed_are_refused_before_anything_is_touched(session, tmp_path, monkeypatch, capsys):
+    old = tmp_path / 'old'
+    assert session('--tutor', 'sim', '--output', old) == 0
+    before = content(old)
+    monkeypatch.delitem(sys.modules, 'shared_control_sim.mujoco_world', raising=False)
+    monkeypatch.setitem(sys.modules, 'mujoco', None)
+    assert session('--tutor', 'sim', '--physics', 'mujoco', '--output', old, '--overwrite') == 2
+    assert 'pip install "shared-control[mujoco]"' in capsys.readouterr().err
+    assert content(old) == before
 
 
 def test_a_port_that_somebody_else_has_is_refused_before_anything_is_touched(session, tmp_path, capsys):

@@ -25,6 +25,7 @@ from rclpy.exceptions import ROSInterruptException
 from rclpy.logging import get_logging_directory
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from shared_control.extras import NotInstalled
 from shared_control.streams import open_closed_streams
 
 from .parameters import ParameterError
@@ -67,7 +68,8 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     """Initialise rclpy, build the node, run it until it ends or a signal comes, close it.
 
     Returns:
-        The exit code: 0, or 2 when an argument, a parameter or a file is unusable (said in one line on stderr).
+        The exit code: 0, or 2 when an argument, a parameter or a file is unusable, or something is not installed
+        (said in one line on stderr).
     """
     open_closed_streams()
     pipe = ReadyPipe()
@@ -93,7 +95,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
         pipe.tell(READY)
         runnable.run(stop)
         code = 0
-    except (ParameterError, OSError) as error:
+    except (ParameterError, OSError, NotInstalled) as error:
         print(f'error: {error}', file=sys.stderr)
         code = 2
     except ROSInterruptException:
