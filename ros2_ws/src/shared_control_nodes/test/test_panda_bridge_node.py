@@ -166,3 +166,14 @@ def test_a_loop_that_stands_still_while_the_arm_is_under_control_ends_it(start_n
     observer.spin_for(3.0)  # twice command_timeout, and more
     node.process.send_signal(signal.SIGCONT)
     assert node.process.wait(60) == -signal.SIGALRM
+
+
+@pytest.mark.usefixtures('with_stand_in')
+def test_an_arm_that_a_hand_has_moved_away_is_not_taken_under_control(start_node, observer):
+    """An enabled controller goes on; its torques are near zero wherever the arm stands, since none are applied."""
+    states = observer.listen(contract.JOINT_STATES)
+    start_node('panda_bridge_node', hostname='far', command_timeout=1.0)
+    observer.spin(lambda: states)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    with pytest.raises(AssertionError, match=r'panda_joint4 is 0\.50 rad off the reference'):
+        enable_beside(observer, commands, [0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0])

@@ -22,6 +22,7 @@ import numpy as np
 from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.spec import RobotSpec
+from shared_control.robot.start import far_from_home
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from std_srvs.srv import SetBool, Trigger
@@ -30,8 +31,6 @@ from .stop_record import StopRecord
 
 STOPPING_TICKS = round(0.5 / CONTROL_PERIOD)
 """How long the arm is brought to rest by damping before the torques end."""
-START_WITHIN = 0.2
-"""rad: nearer than this to the reference, a joint may be enabled; from further off the arm would leap."""
 JOINTS_SECONDS = 1.0
 """Joint positions that are older than this do not count, s."""
 
@@ -126,12 +125,7 @@ class Safety:
             return f'the emergency stop is on: call {self._reset_name} first'
         if time.monotonic() - self._q_seen > JOINTS_SECONDS:
             return f'no usable joint states on {self._node.resolve_topic_name(contract.JOINT_STATES.name)}'
-        off = np.abs(self._q - self._spec.home)
-        if off.max() > START_WITHIN:
-            joint = int(off.argmax())
-            return (f'{self._spec.joints[joint]} is {off[joint]:.2f} rad off the reference, at most {START_WITHIN} are '
-                    'allowed: bring the arm there first')
-        return ''
+        return far_from_home(self._spec, self._q)
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data and not self.enabled:

@@ -27,6 +27,7 @@ from rclpy.node import Node
 from shared_control.rates import CONTROL_PERIOD
 from shared_control.robot.reflex import command_violation
 from shared_control.robot.spec_file import panda
+from shared_control.robot.start import far_from_home
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
@@ -150,6 +151,10 @@ class PandaBridgeNode:
             return f'the arm is in mode {self._state.mode}, not {IDLE}'
         if self._command is None or self._silence() > self._timeout:
             return f'no torques on {self._commands.topic_name}: enable the controller first'
+        # The controller looked when it was enabled; since then a hand may have moved the arm, which does not follow it.
+        # Its torques do not show that: they begin near zero wherever the arm stands.
+        if away := far_from_home(panda(), self._state.q):
+            return away
         return command_violation(panda(), self._command, np.zeros(panda().dof), CONTROL_PERIOD)
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:

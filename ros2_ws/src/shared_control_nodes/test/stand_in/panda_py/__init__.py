@@ -15,7 +15,7 @@
 """Stands in for panda-python where there is no arm: the few calls that the bridge makes, with their signatures.
 
 Behind them is the Panda of shared_control's world, which steps whenever it is looked at, up to the present.
-``hostname`` "nobody" does not answer.
+``hostname`` "nobody" does not answer; "far" has an elbow that stands half a radian off the reference.
 """
 
 import time
@@ -23,6 +23,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+from shared_control.robot.spec_file import panda
 from shared_control.scene import Ball
 from shared_control.tasks.balance import BALANCE
 from shared_control_sim.bullet import BulletWorld
@@ -42,7 +43,9 @@ class Panda:
         if hostname == 'nobody':
             raise RuntimeError('libfranka: Connection to FCI refused.')
         # With next to nothing on the tray the arm stays where it is under zero torque.
-        self._robot = EffortPanda(BulletWorld(replace(BALANCE.scene, ball=Ball(mass=1e-6))))
+        off = np.eye(7)[3] * (0.5 if hostname == 'far' else 0.0)
+        self._robot = EffortPanda(BulletWorld(
+            replace(BALANCE.scene, ball=Ball(mass=1e-6)), spec=replace(panda(), home=panda().home + off)))
         self._began = time.monotonic()
         self._ticks = 0
         self._controller = None
