@@ -49,7 +49,18 @@ def start_nodes(context: LaunchContext) -> list[Node]:
 
     Raises:
         ValueError: an argument or the parameter file cannot be used.
+        RuntimeError: the Python of ``ros2`` lacks what the nodes have.
     """
+    try:
+        return _nodes(context)
+    except ModuleNotFoundError as error:
+        raise RuntimeError(
+            f'{error}: a session reckons with its task, by packages of pip that the Python of this ros2 has not. '
+            'Use that of the nodes: VENV/bin/python $(which ros2) launch shared_control_bringup session.launch.py'
+        ) from error
+
+
+def _nodes(context: LaunchContext) -> list[Node]:
     settings = Settings(
         tutor=LaunchConfiguration('tutor').perform(context),
         profile=LaunchConfiguration('profile').perform(context),

@@ -163,6 +163,16 @@ def test_a_session_refuses_what_it_would_not_go_by(started, tmp_path):
         started('session.launch.py', **{**ARGUMENTS, 'params_file': str(tmp_path / 'mine.yaml')})
 
 
+def test_a_session_says_which_python_it_needs(started, monkeypatch):
+    """That of ``ros2`` is the system's, which has no packages from pip."""
+    def resolved(_):
+        raise ModuleNotFoundError("No module named 'pinocchio'", name='pinocchio')
+
+    monkeypatch.setattr(Settings, 'resolved', resolved)
+    with pytest.raises(RuntimeError, match=r"'pinocchio'.*VENV/bin/python \$\(which ros2\) launch"):
+        started('session.launch.py', **ARGUMENTS)
+
+
 @pytest.mark.parametrize('tutor', TUTORS)
 def test_a_launch_starts_the_nodes_that_a_session_starts(started, tutor):
     arguments = {**ARGUMENTS, 'tutor': tutor, 'seed': '7', 'page': '0.0.0.0:9000'}
@@ -220,7 +230,10 @@ def test_the_readme_lists_the_files_and_their_arguments():
 
 
 def test_launch_files_need_no_packages_from_pip():
-    """``ros2 launch`` runs on the system's Python, which has none; nodes run on that of their scripts."""
+    """``ros2 launch`` runs on the system's Python, which has none; nodes run on that of their scripts.
+
+    When it starts, that of a session needs them all the same (above); its arguments can be shown without.
+    """
     lines = {ast.unparse(item) for path in [*FILES, PACKAGE / 'shared_control_bringup' / 'launching.py']
              for item in ast.parse(path.read_text()).body if isinstance(item, ast.ImportFrom) and not item.level
              and not item.module.startswith(('launch', 'shared_control_bringup.launching'))}
