@@ -57,3 +57,13 @@ def moment_of(wrench: WrenchStamped, axes: tuple[int, ...] = BALANCE.axes, frame
             raise ValueError(f'{part}.{component} is {value}')
         values.append(value)
     return np.array(values)
+
+
+def not_shared(wrench: WrenchStamped, axes: tuple[int, ...]) -> str:
+    """Which component is not zero though it counts nothing, since the task does not share it; empty: none is."""
+    for row, (part, component) in enumerate(COMPONENTS):
+        value = getattr(getattr(wrench.wrench, part), component)
+        if value and row not in axes:
+            shared = ', '.join('.'.join(COMPONENTS[axis]) for axis in axes)
+            return f'{part}.{component} is {value} and counts nothing: the task shares {shared}'
+    return ''

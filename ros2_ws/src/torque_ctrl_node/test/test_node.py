@@ -85,10 +85,10 @@ class Robot:
         self.observer.spin(lambda: len(self.commands) > count)
         return np.array(self.commands[-1].data)
 
-    def send(self, publisher, m_y, age=0.0, frame=contract.BASE_FRAME):
+    def send(self, publisher, m_y, age=0.0, frame=contract.BASE_FRAME, m_x=0.0):
         message = WrenchStamped()
         message.header.frame_id = frame
-        message.wrench.torque.y = m_y
+        message.wrench.torque.x, message.wrench.torque.y = m_x, m_y
         set_ns(message.header.stamp, self.now_ns - int(age * 1e9))
         publisher.publish(message)
         time.sleep(0.05)
@@ -187,6 +187,11 @@ class TestRunningController:
         np.testing.assert_array_equal(robot.tick(), expected(0.0))
         node.wait_for_log(said)
         assert 'dropped a message on /human/target_wrench' in node.log()
+
+    def test_a_component_that_the_task_does_not_share_counts_nothing_and_is_named(self, node, robot):
+        robot.send(robot.agent, 0.5, m_x=2.0)
+        np.testing.assert_array_equal(robot.tick(), expected(0.5))
+        node.wait_for_log('/agent/target_wrench: torque.x is 2.0 and counts nothing: the task shares torque.y')
 
     def test_broken_joint_states_get_no_answer(self, node, robot):
         answers = len(robot.commands)

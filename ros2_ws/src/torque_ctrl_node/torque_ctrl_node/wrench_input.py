@@ -22,7 +22,7 @@ from shared_control.control.moments import MomentSource
 from shared_control_ros.contract import Topic
 from shared_control_ros.fast_loop import Polled
 from shared_control_ros.stamps import to_ns
-from shared_control_ros.wrenches import moment_of
+from shared_control_ros.wrenches import moment_of, not_shared
 
 
 class WrenchInput:
@@ -58,6 +58,9 @@ class WrenchInput:
                 f'dropped a message on {self.topic_name}: {error}', throttle_duration_sec=1.0)
             return
         self._source.take(moment, stamp_ns)
+        if lost := not_shared(message, self._axes):  # a source with another task, started by hand
+            self._node.get_logger().warning(
+                f'{self.topic_name}: {lost} (parameter task; has its source the same?)', throttle_duration_sec=5.0)
 
     def _check_age(self, age: float) -> None:
         if age > self._timeout:
