@@ -124,6 +124,24 @@ def test_does_not_enable_itself_after_it_was_disabled(start_node, robot):
     assert robot.run(off=0.0) == []
 
 
+def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_node, robot):
+    """Its driver was started anew, and a hand has moved the arm; near the reference the controller goes on."""
+    node = start_node('torque_ctrl_node')
+
+    def enabled():
+        robot.run(50)
+        return robot.ask(contract.ENABLE_SERVICE, SetBool, data=True).success
+
+    robot.observer.spin(enabled)
+    robot.run_until_answered()
+    robot.observer.spin_for(1.5)
+    robot.run_until_answered(off=0.1)
+    robot.observer.spin_for(1.5)
+    assert robot.run(off=0.5) == []
+    assert 'disabled: no joint states came for a while, and now panda_joint1 is 0.50 rad off' in node.log()
+    assert robot.run(off=0.0) == [], 'until somebody enables it'
+
+
 def test_a_controller_that_leaves_brings_the_arm_to_rest(start_node, robot):
     node = start(start_node)
     robot.run_until_answered()

@@ -46,7 +46,7 @@ from shared_control_ros.watchdog import Watchdog
 
 from .applied_moments import AppliedMoments
 from .joint_states import JointStateReader
-from .safety import Safety
+from .safety import JOINTS_SECONDS, Safety
 from .wrench_input import WrenchInput
 
 TICKS_PER_POLL = 10
@@ -120,6 +120,7 @@ class TorqueCtrlNode:
         self._background = Background(node)
         self._now_ns = self._answered_ns = 0
         self._ticks = 0
+        self._silent_turns = 0
 
     def run(self, stop: Stop) -> None:
         """Answer joint states until told to stop."""
@@ -127,6 +128,7 @@ class TorqueCtrlNode:
         while not stop.requested:
             message = self._joint_states.wait(SILENCE)
             if message is None:
+                self._silent_turns += 1
                 self._serve()
                 self._diagnostics.skip()
             else:
@@ -150,6 +152,10 @@ class TorqueCtrlNode:
                 f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
             return
         self._now_ns = now_ns
+        if self._silent_turns:
+            if self._silent_turns * SILENCE > JOINTS_SECONDS:
+                self._safety.see_again(state[0])
+            self._silent_turns = 0
         if not self._safety.enabled:
             self._stand_by(now_ns, *state)
         if self._safety.enabled:

@@ -65,6 +65,7 @@ class Safety:
         """Whether the emergency stop is on."""
         if not self.is_stopped:
             self._record.forget()
+        self._beside_a_simulator = enables_itself
         self._enables_itself = enables_itself and not self.is_stopped
         self._enable_name = node.resolve_service_name(contract.ENABLE_SERVICE)
         self._reset_name = node.resolve_service_name(contract.RESET_EMERGENCY_STOP_SERVICE)
@@ -93,6 +94,17 @@ class Safety:
                 self._node.get_logger().warning(f'not enabled yet: {obstacle}', throttle_duration_sec=5.0)
             else:
                 self._enable()
+
+    def see_again(self, q: np.ndarray) -> None:
+        """Joint positions, (n,), rad, after none have come for longer than ``JOINTS_SECONDS``.
+
+        A robot whose driver was started anew may stand elsewhere than where it was when somebody enabled the
+        controller. A simulator's stands where it stood before a pause, and harms nobody.
+        """
+        if self.enabled and not self._beside_a_simulator and (away := far_from_home(self._spec, q)):
+            self.end_torques()
+            self.stopping_ticks = 0  # what has had no torques for so long is at rest
+            self._changed(f'disabled: no joint states came for a while, and now {away}')
 
     def hear(self) -> None:
         """Look whether somebody has published an emergency stop; false means nothing: only the service ends one."""
