@@ -43,14 +43,19 @@ def load(group: str, name: str) -> Any:
     """What a group has under ``name``.
 
     Raises:
-        ValueError: there is nothing of that name; the message lists the names.
+        ValueError: there is nothing of that name; the message lists the names. Or it has another name itself, by which
+            policies would look for it in vain.
         NotInstalled: what it needs is not there; the message says what to install.
     """
     kind = group.rpartition('.')[2].removesuffix('s')
     for entry_point in entry_points(group=group):
         if entry_point.name == name:
             try:
-                return entry_point.load()
+                found = entry_point.load()
             except ModuleNotFoundError as error:
                 raise missing(f'the {kind} {name!r}', error) from error
+            if group in (TASKS, LEARNERS) and found.name != name:
+                raise ValueError(f'the {kind} {name!r} has the name {found.name!r} in {entry_point.value}, by which '
+                                 'policies would look for it in vain: give it the same as its entry point')
+            return found
     raise ValueError(f'no {kind} {name!r}; there are {", ".join(names(group)) or "none"}')

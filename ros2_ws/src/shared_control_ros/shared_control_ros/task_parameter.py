@@ -19,7 +19,7 @@ from shared_control.plugins import TASKS, load, names
 from shared_control.tasks.task import Task
 
 from .declarations import TASK
-from .parameters import declare
+from .parameters import ParameterError, declare
 
 
 def declare_task(node: Node, description: str) -> Task:
@@ -30,7 +30,11 @@ def declare_task(node: Node, description: str) -> Task:
         description: of the parameter: what in the task matters to this node.
 
     Raises:
-        ParameterError: there is no such task.
+        ParameterError: there is no such task, or it cannot be used.
     """
-    task: Task = load(TASKS, declare(node, 'task', TASK, description, choices=names(TASKS)))()
+    name = declare(node, 'task', TASK, description, choices=names(TASKS))
+    try:
+        task: Task = load(TASKS, name)()
+    except ValueError as error:
+        raise ParameterError(f"parameter 'task': {error}") from error
     return task
