@@ -14,10 +14,14 @@
 
 """The node alone; on the graph it is tested in tests/test_mock_panda.py."""
 
+import shutil
 import signal
+import time
 
 import pytest
 from shared_control_ros import contract
+from shared_control_ros.stamps import to_ns
+from shared_control_testing.faults.machine import Machine
 from std_msgs.msg import Float64MultiArray
 from std_srvs.srv import SetBool
 
@@ -61,3 +65,19 @@ def test_it_moves_only_while_it_is_enabled(start_node, observer):
     observer.spin(lambda: mode() and 'robot/enable to go on' in reports[-1].status[0].message)
     assert enable(True).success
     observer.spin(lambda: mode() == 'move')
+
+
+@pytest.mark.skipif(shutil.which('cc') is None, reason='cc compiles what sets the clock')
+def test_its_stamps_follow_a_clock_that_was_set(start_node, observer, tmp_path, monkeypatch):
+    """Keys are stamped by it; after a step they were too old or too new for good."""
+    machine = Machine(tmp_path)
+    for name, value in machine.environment.items():
+        monkeypatch.setenv(name, value)
+    states = observer.listen(contract.JOINT_STATES_THROTTLE)
+    node = start_node('mock_panda_node')
+    observer.spin(lambda: states)
+    for step in (5.0, -10.0):
+        machine.set_clock(step)
+        observer.spin(lambda: abs(to_ns(states[-1].header.stamp) * 1e-9 - time.time() - machine.clock_s) < 0.3)
+    assert "stamps set anew: this machine's clock was set back by 10.0 s" in node.log()
+    machine.close()

@@ -31,6 +31,7 @@ from shared_control.tasks.task import BallStarts
 from shared_control.world import World
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
+from shared_control_ros.clock_steps import ClockSteps, in_words
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.one_graph import claim
@@ -108,6 +109,7 @@ class MockPandaNode:
         keep_loop_on_time()
         # The robot's clock: stamps are whole milliseconds, and policy ticks are multiples of 20 ms.
         self._start_ns = time.time_ns() // POLICY_PERIOD_NS * POLICY_PERIOD_NS
+        self._clock_steps = ClockSteps()
         self._due = time.monotonic()
         while not stop.requested:
             self._wait_for_tick()
@@ -122,7 +124,15 @@ class MockPandaNode:
             if self._robot.mode is not mode:
                 self._on_mode()
             if self._diagnostics.due():
+                self._follow_clock_of_the_day()
                 self._report()
+
+    def _follow_clock_of_the_day(self) -> None:
+        """As the bridge does: others stamp by that clock, and their moments would count no more after it was set."""
+        step = self._clock_steps.new()
+        if step and not self._has_clock:
+            self._start_ns += round(step * 1e9 / POLICY_PERIOD_NS) * POLICY_PERIOD_NS
+            self.node.get_logger().warning(f'stamps set anew: {in_words(step)}')
 
     @property
     def _stamp_ns(self) -> int:
