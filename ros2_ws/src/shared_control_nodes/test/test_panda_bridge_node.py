@@ -177,3 +177,20 @@ def test_an_arm_that_a_hand_has_moved_away_is_not_taken_under_control(start_node
     commands = observer.publisher(contract.EFFORT_COMMANDS)
     with pytest.raises(AssertionError, match=r'panda_joint4 is 0\.50 rad off the reference'):
         enable_beside(observer, commands, [0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0])
+
+
+@pytest.mark.usefixtures('with_stand_in')
+def test_the_time_that_an_arm_takes_to_begin_is_no_silence(start_node, observer):
+    states, reports = observer.listen(contract.JOINT_STATES), observer.listen(contract.DIAGNOSTICS)
+    node = start_node('panda_bridge_node', hostname='slow', command_timeout=1.0)
+    observer.spin(lambda: states)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    enable_beside(observer, commands, [0.0] * 7)
+
+    def answered():
+        commands.publish(Float64MultiArray(data=[0.0] * 7))
+        return any(value.key == 'enabled' and value.value == 'True'
+                   for report in reports for value in report.status[0].values)
+
+    observer.spin(lambda: answered() or 's: disabled, the arm' in node.log())
+    assert 's: disabled, the arm' not in node.log()

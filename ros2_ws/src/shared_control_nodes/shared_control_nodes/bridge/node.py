@@ -165,6 +165,7 @@ class PandaBridgeNode:
                 if obstacle := self._obstacle():
                     raise RuntimeError(obstacle)
                 self._arm.start()
+                self._command_time = time.monotonic()  # while it began nobody had a state to answer: that is no silence
                 self._enabled = True
             response.success = True
             response.message = 'enabled: the arm moves' if self._enabled else 'disabled: the arm holds itself'

@@ -15,7 +15,8 @@
 """Stands in for panda-python where there is no arm: the few calls that the bridge makes, with their signatures.
 
 Behind them is the Panda of shared_control's world, which steps whenever it is looked at, up to the present.
-``hostname`` "nobody" does not answer; "far" has an elbow that stands half a radian off the reference.
+``hostname`` "nobody" does not answer; "far" has an elbow that stands half a radian off the reference; "slow" takes two
+seconds until it is under control.
 """
 
 import time
@@ -46,6 +47,7 @@ class Panda:
         off = np.eye(7)[3] * (0.5 if hostname == 'far' else 0.0)
         self._robot = EffortPanda(BulletWorld(
             replace(BALANCE.scene, ball=Ball(mass=1e-6)), spec=replace(panda(), home=panda().home + off)))
+        self._start_seconds = 2.0 if hostname == 'slow' else 0.0
         self._began = time.monotonic()
         self._ticks = 0
         self._controller = None
@@ -66,6 +68,7 @@ class Panda:
 
     def start_controller(self, controller):
         controller.torque = np.zeros(7)
+        time.sleep(self._start_seconds)
         self._controller = controller
         self._robot.tick(controller.torque)  # the control begins with zero, whatever is set next
         self._ticks += 1
