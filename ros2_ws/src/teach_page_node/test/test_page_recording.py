@@ -68,6 +68,21 @@ def test_verdicts_are_at_the_marks_and_what_is_discarded_leaves_the_chart(tmp_pa
     assert returns == [[-100.0], [], [-100.0]]
 
 
+@pytest.mark.parametrize('without', [(topic,) for topic in contract.TRAINING] + [contract.TRAINING])
+def test_a_bag_without_a_lesson_or_without_an_episode_that_ended_can_be_seen(tmp_path, without):
+    """Stopped in the practice or in the first episode; teleoperation alone; a topic that somebody left out."""
+    made = record([lesson()])
+    for topic in without:
+        made.drop(topic, 0, len(made.of(topic)))
+    bag = read_bag(made.write(tmp_path / 'bag', without=() if len(without) == 1 else without))
+    desk = ReplayDesk(Recording(bag))
+    desk.do('seek', 1.0)
+    picture = desk.look()
+    assert picture.message()['q'] and picture.trace
+    assert picture.history.message()['returns'] == []
+    Recording(bag).marks()
+
+
 def test_keys_are_lit_while_they_were_pressed(bag):
     recording = Recording(bag)
     assert recording.picture(0.41).keys == [1, 0, 0]
