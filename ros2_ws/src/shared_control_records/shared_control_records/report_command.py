@@ -43,12 +43,14 @@ def run(args: argparse.Namespace) -> int:
     from .study.folder import StudyFolder
     if StudyFolder.is_at(args.source):
         from .study_report.report import write_study_report
-        page = write_study_report(StudyFolder(args.source), args.output or args.source / 'report')
+        study = StudyFolder(args.source)
+        page = write_study_report(study, args.output or study.report)
     else:
         from .bag.task import session_record
         from .session.bag_report import write_bag_report
+        from .session.folder import report_beside
         bag = find_bag(args.source)
-        page = write_bag_report(bag, args.output or args.source.absolute().with_name(f'{args.source.stem}_report'))
+        page = write_bag_report(bag, args.output or report_beside(args.source))
         if not session_record(bag):
             print('note: this bag has no record of the session (`ros2 bag record` and `convert` keep none): preset, '
                   'test of the policy and restarts are unknown, the tutor is guessed, the task is what its nodes '

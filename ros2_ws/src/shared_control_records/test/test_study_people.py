@@ -191,6 +191,27 @@ def test_who_kept_may_have_it_deleted_later_and_not_the_other_way_round(study, a
         assert progress_of(study).withdrawn == then
 
 
+def test_what_is_deleted_is_in_no_report_any_more(study, answers):
+    folder, plan = study
+    answers(*BEGINNING, '', *'123456', '', *'654321', 'Call me Zoe.')
+    assert lead(study, Sessions())
+    taught_session(study)
+    run_job(folder, 'coached/p01')
+    write_study_report(folder, folder.report)
+    of_session = folder.person(plan.participant(1)) / 'coached_report'
+    report = SessionFolder.create(of_session, settings={'tutor': 'page'})
+    report.report.write_text('<html>')
+    report.release()
+    mine = folder.report / 'data' / 'mine.csv'
+    mine.write_text('1')
+    assert 'Zoe' in (folder.report / 'data' / 'participants.csv').read_text()
+    withdraw(folder, plan, plan.participant(1), 'delete')
+    assert not of_session.exists()
+    assert [path for path in folder.report.rglob('*') if path.is_file()] == [mine], 'nothing of somebody else goes'
+    kept = [path for path in folder.path.rglob('*') if path.is_file() and 'Zoe' in path.read_text(errors='replace')]
+    assert kept == []
+
+
 def test_a_session_that_fails_is_said_and_done_again(study, answers):
     answers(*BEGINNING, '')
     with pytest.raises(StudyError, match='coached failed'):

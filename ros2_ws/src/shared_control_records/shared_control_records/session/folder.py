@@ -30,6 +30,11 @@ _OF_THE_NODES = (
 """What recorder, learner and nodes write. Their modules take seconds to load, so the names stand here once more."""
 
 
+def report_beside(session: Path) -> Path:
+    """Where the report of a session or of a bag is written unless another place is named."""
+    return session.absolute().with_name(f'{session.stem}_report')
+
+
 class SessionFolder(RunFolder):
     """Paths of everything that a session keeps. Make one with :meth:`create` or :meth:`open`."""
 

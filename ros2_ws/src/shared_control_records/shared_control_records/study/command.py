@@ -100,6 +100,10 @@ def _run(args: argparse.Namespace) -> int:
             withdraw(folder, plan, participant, args.withdraw)
             did = 'deleted' if args.withdraw == 'delete' else 'kept'
             print(f'Participant {participant.number} has withdrawn; what was recorded is {did}.')
+            if args.withdraw == 'delete':
+                print(f'The report, if there was one, is gone with it, and can be written anew:\n'
+                      f'  shared-control report {folder.path}\n'
+                      'Copies, exports and reports in other places are yours to clean.')
             return 0
         return 0 if lead_through(folder, plan, participant, asker_of(plan.people)) else INTERRUPTED
     who = 'simulated' if plan.people is None else 'real'

@@ -14,12 +14,19 @@
 
 """The folder of a study: the plan, a folder for each run, and one for each real participant."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
 from shared_control.files import lock, write_atomically
 
 from .plan import Job, Participant, Plan, plan_of, read_plan
+
+_OF_A_REPORT = (
+    'report.html', 'data/participants.csv', 'data/runs.csv', 'data/conditions.csv', 'data/comparisons.csv',
+    'data/groups.csv', 'data/cells.csv', 'data/transfer.csv', 'data/fig[0-9]*_*.csv', 'figures/fig[0-9]*_*.png',
+    'figures/fig[0-9]*_*.svg', 'figures/fig[0-9]*_*.pdf')
+"""What a report writes. Its modules take seconds to load, so the names stand here once more."""
 
 
 class StudyError(OSError):
@@ -32,6 +39,7 @@ class StudyFolder:
         plan.yaml                         as it was begun with
         runs/CONDITION/pNN/               policy, episodes, tests and result of a run
         people/pNN/                       a real participant: progress.json, notes.csv, a session for each condition
+        report/                           of all of it, unless another place was named
 
     Args:
         path: of the folder.
@@ -40,6 +48,7 @@ class StudyFolder:
     def __init__(self, path: Path):
         self.path = path
         self.plan = path / 'plan.yaml'
+        self.report = path / 'report'
         self._lock: IO[bytes] | None = None
 
     @staticmethod
@@ -58,6 +67,19 @@ class StudyFolder:
     def session(self, job: Job) -> Path:
         """The folder of the session in which a real participant teaches."""
         return self.person(job.participant) / job.condition.name
+
+    def remove_report(self) -> None:
+        """Remove the report, which has what everybody did and said; what somebody else put there stays.
+
+        Raises:
+            OSError: it cannot be removed.
+        """
+        for pattern in _OF_A_REPORT:
+            for path in self.report.glob(pattern):
+                path.unlink()
+        for folder in (self.report / 'data', self.report / 'figures', self.report):
+            with suppress(OSError):  # not empty, or not there
+                folder.rmdir()
 
     def without_path(self, text: str) -> str:
         """A text for what is passed on: whose machine the folder was on is nobody's business."""

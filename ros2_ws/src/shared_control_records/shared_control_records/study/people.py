@@ -26,7 +26,7 @@ from pathlib import Path
 from shared_control.processes import leave_with_the_parent
 from shared_control_learning.practice import PRACTICE_NAME
 
-from ..session.folder import SessionFolder
+from ..session.folder import SessionFolder, report_beside
 from .asking import Asker, TerminalAsker
 from .folder import StudyError, StudyFolder
 from .form_page import FormPage
@@ -121,8 +121,8 @@ def withdraw(folder: StudyFolder, plan: Plan, participant: Participant, what: st
     """A participant takes no further part, and what was recorded is kept or deleted.
 
     Args:
-        what: ``keep``: sessions that came to their end count. ``delete``: all that was recorded of them goes, but that
-            they have withdrawn.
+        what: ``keep``: sessions that came to their end count. ``delete``: all that was recorded of them goes, with what
+            reports have of it, but that they have withdrawn.
 
     Raises:
         StudyError: there is nobody of that number yet; or what was recorded cannot be removed.
@@ -137,12 +137,16 @@ def withdraw(folder: StudyFolder, plan: Plan, participant: Participant, what: st
     progress.save()
     if what == 'delete':
         try:
+            folder.remove_report()
             (person / NOTES).unlink(missing_ok=True)
             for job in plan.jobs:
                 if job.participant == participant:
                     for path in (folder.session(job), folder.run(job)):
                         if path.exists():
                             shutil.rmtree(path)
+                    report = SessionFolder(report_beside(folder.session(job)))
+                    if report.holds_run:
+                        report.discard()
         except OSError as error:
             raise StudyError(f'not everything of participant {participant.number} could be removed: {error}') from error
 
