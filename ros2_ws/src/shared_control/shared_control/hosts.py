@@ -19,6 +19,9 @@ from urllib.parse import urlsplit
 
 LOOPBACK = ('127.0.0.1', 'localhost', '::1')
 """Names of this machine, by which it is reached from nowhere else."""
+OWN_FRAMES_ONLY = {'Content-Security-Policy': "frame-ancestors 'self'", 'X-Frame-Options': 'SAMEORIGIN'}
+"""Headers of an answer that a page of somebody else must not show within its own, where a person would press keys and
+buttons of ours that they do not see."""
 
 
 def is_loopback(authority: str) -> bool:

@@ -239,6 +239,9 @@ class Visitor:
         request = urllib.request.Request(self._address, headers=headers)
         return urllib.request.urlopen(request, timeout=60).read().decode()
 
+    def headers(self):
+        return urllib.request.urlopen(self._address, timeout=60).headers
+
     def post(self, body, **headers):
         request = urllib.request.Request(self._address, body, headers)
         return urllib.request.urlopen(request, timeout=60).read().decode()
@@ -344,6 +347,7 @@ def test_the_last_page_ends_by_itself_once_it_is_shown(asked):
     {'Host': 'evil.example'}, {'Host': '['}, {'Host': ''}, {'Origin': 'http://evil.example'}, {'Origin': 'http://['}])
 def test_other_pages_may_not_speak_to_the_form(asked, header):
     visitor, answer = asked('ready', 'Sit down.')
+    assert "frame-ancestors 'self'" in visitor.headers()['Content-Security-Policy']
     with pytest.raises(urllib.error.HTTPError) as refused:
         visitor.get(**header)
     assert refused.value.code == 403

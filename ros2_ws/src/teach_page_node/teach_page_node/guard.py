@@ -15,15 +15,16 @@
 """Who may speak to the page's server.
 
 A server on the loopback interface is still within reach of every web page that the person has open: a foreign page can
-open a WebSocket to it, or get there under a name of its own (DNS rebinding). So the names of host and origin are looked
-at, and who opens the server to the network needs a token.
+open a WebSocket to it, get there under a name of its own (DNS rebinding), or show it in an invisible frame, which would
+take the teacher's seat and what is pressed. So the names of host and origin are looked at, no other page may frame it,
+and who opens the server to the network needs a token.
 """
 
 import hashlib
 import secrets
 from urllib.parse import parse_qs
 
-from shared_control.hosts import is_loopback
+from shared_control.hosts import OWN_FRAMES_ONLY, is_loopback
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -50,7 +51,7 @@ class Guard:
             return
         refusal = self._refusal(scope)
         if refusal is None:
-            await self._app(scope, receive, self._with_cookie(scope, send))
+            await self._app(scope, receive, self._with_headers(scope, send))
         elif scope['type'] == 'websocket':
             await send({'type': 'websocket.close', 'code': 1008, 'reason': refusal})
         else:
@@ -74,16 +75,18 @@ class Guard:
         cookies = (part.strip().partition('=') for part in headers.get('cookie', '').split(';'))
         return _query_tokens(scope) + [value for name, _, value in cookies if name == self._cookie]
 
-    def _with_cookie(self, scope: Scope, send: Send) -> Send:
-        if self._token is None or not _query_tokens(scope):
-            return send
+    def _with_headers(self, scope: Scope, send: Send) -> Send:
+        headers = dict(OWN_FRAMES_ONLY)
+        if self._token is not None and _query_tokens(scope):
+            headers['Set-Cookie'] = f'{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/'
 
-        async def send_with_cookie(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message['type'] == 'http.response.start':
-                MutableHeaders(scope=message).append(
-                    'set-cookie', f'{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/')
+                answer = MutableHeaders(scope=message)
+                for name, value in headers.items():
+                    answer.append(name, value)
             await send(message)
-        return send_with_cookie
+        return send_with_headers
 
 
 def _query_tokens(scope: Scope) -> list[str]:

@@ -61,6 +61,15 @@ def test_other_pages_may_not_speak_to_it(visit, origin):
         pass
 
 
+@pytest.mark.parametrize('token', [None, 'secret'])
+def test_other_pages_may_not_show_it_in_a_frame(visit, token):
+    for path in ('/', '/?token=secret'):
+        answer = visit(token).get(path, headers={'sec-fetch-dest': 'iframe'})
+        if answer.status_code == 200:
+            assert answer.headers['content-security-policy'] == "frame-ancestors 'self'"
+            assert answer.headers['x-frame-options'] == 'SAMEORIGIN'
+
+
 def test_an_open_page_wants_its_token_once(visit):
     client = visit('secret', 'laptop:8088')
     assert client.get('/').status_code == 403

@@ -28,7 +28,7 @@ from string import Template
 from typing import Any
 from urllib.parse import parse_qs
 
-from shared_control.hosts import LOOPBACK, family_of, is_loopback, url_of
+from shared_control.hosts import LOOPBACK, OWN_FRAMES_ONLY, family_of, is_loopback, url_of
 
 from .plan_file import Question
 from .progress import Scale
@@ -160,7 +160,7 @@ class _Handler(BaseHTTPRequestHandler):
         body = page.encode()
         self.send_response(code)
         for name, value in (('Content-Type', 'text/html; charset=utf-8'), ('Cache-Control', 'no-store'),
-                            ('Study-Page', kind), ('Content-Length', str(len(body)))):
+                            ('Study-Page', kind), ('Content-Length', str(len(body))), *OWN_FRAMES_ONLY.items()):
             self.send_header(name, value)
         self.end_headers()
         self.wfile.write(body)
