@@ -31,6 +31,8 @@ LEAVE = b'\x1b[?2026l\x1b[0m\x1b[?7h\x1b[?25h\x1b[?1049l'
 _BEGIN_FRAME, _END_FRAME = '\x1b[?2026h', '\x1b[?2026l'
 _REPAINT_AFTER = 2.0
 """Every line is written again after this, s, in case something else wrote across the screen."""
+_USUAL_SIZE = 80, 24
+"""Columns and rows of a terminal that does not tell them."""
 _FLUSH_TIMEOUT = 0.2
 """How long leaving waits for a stalled terminal, s."""
 
@@ -80,9 +82,11 @@ class Terminal:
     def size(self) -> tuple[int, int]:
         """Columns and rows; asked anew each time, so that a resize is seen at the next frame."""
         try:
-            return os.get_terminal_size(self._fd)
+            columns, rows = os.get_terminal_size(self._fd)
         except OSError:
-            return 80, 24
+            columns = rows = 0
+        # Serial lines and containers do not know their size, and say 0.
+        return columns or _USUAL_SIZE[0], rows or _USUAL_SIZE[1]
 
     def _is_foreground(self) -> bool:
         try:

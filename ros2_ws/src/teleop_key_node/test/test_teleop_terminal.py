@@ -128,6 +128,16 @@ def test_the_screen_shows_the_lesson(graph, start_in_terminal):
     assert '\x1b[17;1H' not in terminal.shown[terminal.shown.rindex('\x1b[2J'):]
 
 
+@pytest.mark.parametrize('size', [(0, 0), (24, 0)])
+def test_a_terminal_that_does_not_know_its_size_is_drawn_on(start_in_terminal, size):
+    """Serial lines and containers say 0 by 0."""
+    terminal = start_in_terminal()
+    terminal.expect('Teach the robot')
+    known = len(terminal.shown)
+    terminal.resize(*size)
+    terminal.expect('Teach the robot', after=known)
+
+
 def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
     terminal = start_in_terminal()
     terminal.type(b'q')
