@@ -99,7 +99,7 @@ def load_policy(path: Path) -> Learner:
         with safe_open(path, framework='pt') as file:
             tensors = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 - not a mapping
         for name, tensor in tensors.items():
-            if not bool(torch.isfinite(tensor).all()):
+            if not bool(torch.isfinite(tensor.double()).all()):  # of numbers of 8 bits it cannot be asked
                 raise ValueError(f'{name} has numbers that are not finite')
         learner.restore(tensors)
     except PolicyFileError:

@@ -190,6 +190,8 @@ def test_names_of_tensors_are_told_short_and_harmless(path, edit):
     (lambda t: t.update(extra=torch.zeros(1)), 'differ: extra'),
     (lambda t: t.update({'policy.log_std': torch.zeros(2)}), r'policy.log_std is torch.float32 \(2,\)'),
     (lambda t: t.update({'policy.log_std': torch.zeros(1, dtype=torch.float64)}), 'float64'),
+    *((lambda t, kind=kind: t.update({'policy.log_std': torch.zeros(1, dtype=kind)}), str(kind)) for kind in (
+        torch.float8_e4m3fn, torch.float8_e5m2, torch.bfloat16, torch.uint16)),
     (lambda t: t.update({name: torch.zeros(100_001, *tensor.shape[1:])
                          for name, tensor in t.items() if name.startswith('corrections.')}),
      r'corrections\.episodes, .* have 100001 rows, at most 100000'),
