@@ -337,6 +337,14 @@ def test_a_choice_may_begin_with_a_space(asked):
     assert answer() == {'hand': ' left'}
 
 
+def test_an_address_that_is_in_use_is_named():
+    with socket.create_server(('127.0.0.1', 0)) as used:
+        port = used.getsockname()[1]
+        for method, *arguments in (('consent', 'Do you agree?'), ('tell', 'That was all.')):
+            with pytest.raises(OSError, match=rf'questions at 127\.0\.0\.1:{port} \(Address already in use\): end'):
+                getattr(FormPage(port=port), method)(*arguments)
+
+
 def test_the_last_page_ends_by_itself_once_it_is_shown(asked):
     visitor, answer = asked('tell', 'That was all. Thank you.')
     assert 'You can close this window.' in visitor.get(**{'Sec-Fetch-Mode': 'navigate'})

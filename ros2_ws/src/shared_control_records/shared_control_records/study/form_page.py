@@ -176,7 +176,12 @@ class _Server(ThreadingHTTPServer):
 
     def __init__(self, address: tuple[str, int], handler: type[_Handler]):
         self.address_family = family_of(address[0])
-        super().__init__(address, handler)
+        try:
+            super().__init__(address, handler)
+        except OSError as error:
+            raise OSError(f'cannot serve the questions at {address[0]}:{address[1]} ({error.strerror}): end what is '
+                          'there (the page of a session that is over stays for ten minutes: close it), or name another '
+                          "--page in the plan's session_options") from error
 
 
 def _page(kind: str, title: str, text: str, fields: str = '', buttons: str = '', key: str = '') -> str:
