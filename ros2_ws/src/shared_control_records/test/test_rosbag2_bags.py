@@ -109,6 +109,38 @@ def test_a_killed_recording_of_rosbag2_is_finished(own, tmp_path, chunks, monkey
     assert 'every file is whole' in capsys.readouterr().out
 
 
+def test_a_file_that_the_metadata_does_not_name_is_not_left_out_without_a_word(own, tmp_path):
+    """A recorder that was killed, or that a full disk stopped, before it wrote the metadata of its last file."""
+    bag = rosbag2.convert(own, tmp_path / 'other', files=2)
+    with rosbag2.edited(bag / 'metadata.yaml') as content:
+        content['relative_file_paths'].pop()
+        content['files'].pop()
+    with pytest.raises(BagReadError, match=r'metadata\.yaml does not name other_1\.mcap; `shared-control recover'):
+        read_bag(bag)
+    recover(bag)
+    equal(read_bag(bag), read_bag(own))
+
+
+def test_a_file_that_play_has_unpacked_beside_the_compressed_one_is_in_nobodys_way(own, tmp_path):
+    bag = rosbag2.convert(own, tmp_path / 'other', compression='file')
+    packed, = bag.glob('*.zstd')
+    rosbag2.convert(own, tmp_path / 'plain').joinpath('plain_0.mcap').rename(packed.with_suffix(''))
+    equal(read_bag(bag), read_bag(own))
+    assert recover(bag) == []
+    equal(read_bag(bag), read_bag(own))
+
+
+def test_a_torn_file_under_another_name_is_finished_too(own, tmp_path, monkeypatch, capsys):
+    bag = rosbag2.convert(own, tmp_path / 'other')
+    path, = bag.glob('*.mcap')
+    (bag / 'metadata.yaml').unlink()
+    renamed = path.rename(bag / 'monday.mcap')
+    renamed.write_bytes(renamed.read_bytes()[:renamed.stat().st_size * 2 // 3])
+    assert run(monkeypatch, 'recover', bag) == 0
+    assert 'messages kept' in capsys.readouterr().out
+    assert len(read_bag(bag).joint_states.stamp_ns)
+
+
 def test_a_bag_of_several_robots_names_them(own, tmp_path):
     bag = rosbag2.convert(own, tmp_path / 'one', rename=lambda topic: {
         '/joint_states': '/a/joint_states', '/ball': '/b/joint_states'}.get(topic, topic))

@@ -62,8 +62,12 @@ def check_is_bag(path: Path) -> None:
 
 
 def bag_files(bag: Path) -> list[Path]:
-    """The ``<name>_<number>.mcap`` files of a bag in the order in which they were recorded."""
-    return sorted((path for path in bag.glob('*.mcap') if _NUMBER.search(path.name)), key=_number)
+    """The ``<name>_<number>.mcap`` files of a bag in the order in which they were recorded.
+
+    Those of other recorders, and renamed ones, may have no number: where none has, all count.
+    """
+    found = sorted(bag.glob('*.mcap'), key=lambda path: (_number(path), path.name))
+    return [path for path in found if _NUMBER.search(path.name)] or found
 
 
 def next_file(bag: Path) -> Path:

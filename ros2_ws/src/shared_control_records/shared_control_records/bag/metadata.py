@@ -62,16 +62,23 @@ def is_finished(path: Path) -> bool:
         return file.read() == MCAP0_MAGIC
 
 
-def lists_all_files(bag: Path) -> bool:
-    """Whether ``metadata.yaml`` names every file of the bag."""
+def unlisted_files(bag: Path) -> list[Path]:
+    """The files of a bag that its ``metadata.yaml`` does not name, so that nobody reads them; all without one.
+
+    One that is compressed may have been unpacked beside it, as ``ros2 bag play`` does.
+
+    Raises:
+        BagError: that is no metadata of a bag.
+    """
     path = bag / 'metadata.yaml'
     if not path.exists():
-        return False
+        return bag_files(bag)
     try:
-        named = yaml.safe_load(path.read_text(encoding='utf-8'))['rosbag2_bagfile_information']['relative_file_paths']
-    except (yaml.YAMLError, KeyError, TypeError) as error:
+        listed = yaml.safe_load(path.read_text(encoding='utf-8'))['rosbag2_bagfile_information']['relative_file_paths']
+        named = {Path(name).name.removesuffix('.zstd') for name in listed}
+    except (yaml.YAMLError, KeyError, TypeError, ValueError) as error:
         raise BagError(f'{path} is no metadata of a bag; move it away') from error
-    return {file.name for file in bag_files(bag)} <= set(named)
+    return [file for file in bag_files(bag) if file.name not in named]
 
 
 def write_metadata(bag: Path) -> None:

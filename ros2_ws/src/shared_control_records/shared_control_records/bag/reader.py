@@ -41,8 +41,8 @@ from shared_control.verdict import Verdict
 
 from .chunks import Block, OutOfOrder, read_blocks
 from .fast_decode import BulkTopic, Columns, Row, command_layout, joint_state_layout, odometry_layout, wrench_layout
-from .files import BagReadError, check_is_bag
-from .metadata import is_finished
+from .files import BagReadError, bag_files, check_is_bag
+from .metadata import is_finished, unlisted_files
 from .recorded import BallTrack, Commands, JointStates, Judgement, Press, Series, Status, Ticks, Wrenches
 from .task import recorded_task, reported_task
 from .ticks import JointStateRows, digests, to_ns
@@ -107,8 +107,8 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
         BagReadError: there is none, or it was not finished, or it is damaged.
     """
     path = Path(path)
-    _check_finished(path)
     try:
+        _check_finished(path)
         task = task or recorded_task(path)
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
@@ -126,10 +126,12 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
 def _check_finished(path: Path) -> None:
     check_is_bag(path)
     folder = path if path.is_dir() else path.parent
-    torn = [file.name for file in (sorted(path.glob('*.mcap')) if path.is_dir() else [path]) if not is_finished(file)]
+    torn = [file.name for file in (bag_files(path) if path.is_dir() else [path]) if not is_finished(file)]
     missing = path.is_dir() and not (path / 'metadata.yaml').is_file()
-    if torn or missing:
-        what = f'{", ".join(torn)} has no index' if torn else 'it has no metadata.yaml'
+    unlisted = [] if torn or missing or not path.is_dir() else [file.name for file in unlisted_files(path)]
+    if torn or missing or unlisted:
+        what = (f'{", ".join(torn)} has no index' if torn else 'it has no metadata.yaml' if missing
+                else f'its metadata.yaml does not name {", ".join(unlisted)}')
         raise BagReadError(f'the recording of the bag {path} was not finished: {what}; '
                            f'`shared-control recover {folder}` finishes it')
 

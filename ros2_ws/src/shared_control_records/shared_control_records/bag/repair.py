@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .files import BagError, bag_files
-from .metadata import lists_all_files, read_summary, write_metadata
+from .metadata import read_summary, unlisted_files, write_metadata
 from .rewrite import rewrite
 
 
@@ -59,7 +59,7 @@ def recover(bag: str | Path, meanwhile: Callable[[], None] = lambda: None) -> li
         raise BagError(f'there is no bag at {bag}')
     unfinished = [path for path in bag_files(bag) if read_summary(path) is None]
     recovered = [Recovered(path, *rewrite(path, meanwhile=meanwhile)) for path in unfinished]
-    if bag_files(bag) and (recovered or not lists_all_files(bag)):
+    if bag_files(bag) and (recovered or unlisted_files(bag)):
         write_metadata(bag)
     return recovered
 
