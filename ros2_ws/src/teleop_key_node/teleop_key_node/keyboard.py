@@ -14,6 +14,7 @@
 
 """From the bytes a terminal sends to strokes, and from strokes to keys that are down."""
 
+import math
 import re
 import time
 from collections.abc import Collection, Iterable
@@ -37,6 +38,8 @@ class Stroke(Enum):
     DISCARD = 'discard'
 
 
+PUSHES = (Stroke.LEFT, Stroke.RIGHT, Stroke.UP, Stroke.DOWN, Stroke.SPACE)
+"""Strokes that push, or take the push away; the others ask for something."""
 _LETTERS = {
     b'a': Stroke.LEFT, b'A': Stroke.LEFT, b'd': Stroke.RIGHT, b'D': Stroke.RIGHT, b' ': Stroke.SPACE,
     b'w': Stroke.UP, b'W': Stroke.UP, b's': Stroke.DOWN, b'S': Stroke.DOWN,
@@ -108,6 +111,9 @@ class HeldKeys:
     A terminal reports no release: a key is down until its strokes have not come for ``REPEATS_WITHIN``. The first
     repetition comes late (0.25 to 0.7 s after the press, as the keyboard is set) and counts as a press.
 
+    Not so for keys that ask for something: held, they would answer their own question, or take back what they said. Of
+    these a press soon after the last one counts when the key is up again, unless it went on.
+
     Args:
         period: at which :meth:`update` is meant to be called, s.
     """
@@ -115,9 +121,15 @@ class HeldKeys:
     REPEATS_WITHIN = 0.13
     """Between two repetitions, s: 10 a second on a Linux console, 30 elsewhere. Nobody presses one key so quickly."""
 
+    FIRST_REPETITION_WITHIN = 0.8
+    """Of the press, s."""
+
     def __init__(self, period: float) -> None:
         self._longest = 2.0 * period
         self._silent: dict[Stroke, float] = {}
+        self._came_at: dict[Stroke, float] = {}
+        self._in_doubt: set[Stroke] = set()
+        """Those down that are a press unless their strokes go on."""
         self._looked_at = 0.0
 
     @property
@@ -135,8 +147,15 @@ class HeldKeys:
                         for stroke, silent in self._silent.items()}
         pressed = []
         for stroke in strokes:
-            if self._silent.get(stroke, self.REPEATS_WITHIN) >= self.REPEATS_WITHIN:
+            goes_on = self._silent.get(stroke, self.REPEATS_WITHIN) < self.REPEATS_WITHIN
+            if goes_on:
+                self._in_doubt.discard(stroke)
+            elif stroke not in PUSHES and now - self._came_at.get(stroke, -math.inf) < self.FIRST_REPETITION_WITHIN:
+                self._in_doubt.add(stroke)
+            else:
                 pressed.append(stroke)
-            self._silent[stroke] = 0.0
+            self._silent[stroke], self._came_at[stroke] = 0.0, now
         self._silent = {stroke: silent for stroke, silent in self._silent.items() if silent < self.REPEATS_WITHIN}
+        pressed += self._in_doubt - self._silent.keys()
+        self._in_doubt &= self._silent.keys()
         return pressed

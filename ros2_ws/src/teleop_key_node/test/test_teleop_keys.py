@@ -60,14 +60,14 @@ def test_what_is_typed_after_escape_is_a_key(monkeypatch):
     assert keyboard.strokes(b'a') == [Stroke.LEFT]
 
 
-def presses(times, look=0.02):
-    """Presses of the left key whose strokes come at ``times``, looked at every ``look`` s."""
+def presses(times, look=0.02, stroke=Stroke.LEFT):
+    """Presses of a key whose strokes come at ``times``, looked at every ``look`` s."""
     held, now, count, end = HeldKeys(0.02), 100.0, 0, 100.0 + max(times) + 5 * look + 0.2
     while now < end:
         now += look
         due = [t for t in times if 100.0 + t <= now]
         times = times[len(due):]
-        count += len(held.update([Stroke.LEFT] * len(due), now))
+        count += len(held.update([stroke] * len(due), now))
     assert not held.down
     return count
 
@@ -78,6 +78,21 @@ def test_repetitions_of_a_held_key_are_no_presses(period):
     assert presses([0.0, *repeats]) == 2, 'the press, and the late first repetition'
     for look in (0.05, 0.09, 0.2, 0.5):
         assert presses(repeats, look) == 1, 'on a busy machine, too'
+
+
+@pytest.mark.parametrize('period', [1 / 30, 1 / 25, 0.092])
+@pytest.mark.parametrize('first', [0.25, 0.5, 0.7])
+@pytest.mark.parametrize('look', [0.02, 0.09, 0.2])
+def test_a_key_that_asks_is_pressed_once_however_long_it_is_held(period, first, look):
+    """q, held, would answer its own question; x, held, would take back that the episode is discarded."""
+    repeats = [first + period * count for count in range(round(3 / period))]
+    assert presses([0.0, *repeats], look, stroke=Stroke.FINISH) == 1
+    assert presses([0.0, *repeats, first + 5.0], look, stroke=Stroke.FINISH) == 2
+
+
+def test_a_key_that_asks_may_be_pressed_twice_in_a_row():
+    for apart in (0.2, 0.4, 0.75, 2.0):
+        assert presses([apart * count for count in range(6)], stroke=Stroke.FINISH) == 6
 
 
 def test_quick_presses_of_a_person_all_count():
