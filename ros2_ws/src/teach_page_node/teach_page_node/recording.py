@@ -91,8 +91,8 @@ class Recording:
         for at in np.arange(max(seconds - back, 0.0), seconds, TRACE_PERIOD):
             parts = self._parts(self._at(float(at))[1])
             moments = [None] * (3 * len(self.task.axes)) if parts is None else [
-                round(value, 4) for moment in parts for value in moment]
-            rows.append([round(float(at), 4), *moments])
+                value for moment in parts for value in moment]
+            rows.append([float(at), *moments])
         return rows
 
     def marks(self) -> list[tuple[float, str, str]]:

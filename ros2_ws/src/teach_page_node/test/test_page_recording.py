@@ -14,6 +14,8 @@
 
 """A recorded session, moment by moment."""
 
+import json
+import math
 import subprocess
 import sys
 
@@ -81,6 +83,20 @@ def test_a_bag_without_a_lesson_or_without_an_episode_that_ended_can_be_seen(tmp
     assert picture.message()['q'] and picture.trace
     assert picture.history.message()['returns'] == []
     Recording(bag).marks()
+
+
+def test_moments_that_are_no_numbers_are_told_as_none(tmp_path):
+    """JSON cannot say them, and a browser drops the whole picture."""
+    made = record([lesson()])
+    for wrench in made.of(contract.HUMAN_APPLIED)[40:60]:
+        wrench.wrench.torque.y = math.nan
+    for wrench in made.of(contract.APPLIED_WRENCH)[40:60]:
+        wrench.wrench.torque.y = math.inf
+    desk = ReplayDesk(Recording(read_bag(made.write(tmp_path / 'bag'))))
+    desk.do('seek', 1.5)
+    message = desk.look().message()
+    json.dumps(message, allow_nan=False)
+    assert any(human is None and agent is not None for _, human, agent, _ in message['trace'])
 
 
 def test_keys_are_lit_while_they_were_pressed(bag):
