@@ -85,6 +85,16 @@ def test_variables_of_the_page(domain_id, monkeypatch):
     assert code == 1 and is_shown(VARIABLES, lines)
 
 
+def test_what_is_pasted_into_a_report_of_a_fault_names_no_home(domain_id):
+    home = os.path.expanduser('~')
+    _, lines = examine(replace(HEALTHY, variables={
+        'FASTRTPS_DEFAULT_PROFILES_FILE': f'{home}/profile.xml', 'ROS_SECURITY_KEYSTORE': home,
+        'ROS_STATIC_PEERS': f'/mnt{home}/a'}))
+    text = '\n'.join(lines)
+    assert '~/profile.xml' in text and 'ROS_SECURITY_KEYSTORE=~' in text
+    assert f'/mnt{home}/a' in text and home not in text.replace(f'/mnt{home}', '')
+
+
 def test_a_domain_that_a_simulator_has(start_node, domain_id):
     start_node('panda_sim_node').wait_for_log('ready')
     code, lines = examine(DOMAIN)

@@ -15,6 +15,8 @@
 """``shared-control doctor``."""
 
 import argparse
+import os
+import re
 from collections.abc import Iterator
 
 from shared_control.command_line import add_parser
@@ -46,11 +48,17 @@ def findings() -> Iterator[Finding]:
     yield from middleware()
 
 
+def for_others(text: str) -> str:
+    """A text without the name of this user's home, since reports of a fault are public."""
+    home = os.path.expanduser('~').rstrip('/')
+    return re.sub(rf'(?<![\w.-]){re.escape(home)}(?![\w.-])', '~', text) if home not in ('', '~') else text
+
+
 def run(_: argparse.Namespace) -> int:
     """Print what was found and give the exit code."""
     levels = []
     for finding in findings():
-        print(finding, flush=True)
+        print(for_others(str(finding)), flush=True)
         levels.append(finding.level)
     faults, notes = levels.count(Level.FAULT), levels.count(Level.NOTE)
     print(f'\n{faults} to mend before a session runs, {notes} to note' if faults or notes else '\nnothing to mend')
