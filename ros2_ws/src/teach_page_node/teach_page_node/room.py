@@ -68,7 +68,8 @@ class Room:
     """All visitors, and the one whose keys count.
 
     The first to come teaches. When the teacher goes, the others go on watching until one of them takes the seat; a
-    teacher that comes back (a reload, a lost connection) has it again.
+    teacher that comes back (a reload, a lost connection) has it again. A page at which nobody has done anything yet, a
+    forgotten one of an earlier session that was connected first, keeps the seat from nobody.
     """
 
     def __init__(self, desk: Desk):
@@ -77,6 +78,8 @@ class Room:
         self._teacher: Visitor | None = None
         self._seat_of = ''
         """The name of the page that teaches, or did last."""
+        self._is_at_work = False
+        """Whether somebody is at the page that teaches: its keys have come, or a command."""
         self._history: dict[str, Any] = History().message()
 
     @property
@@ -118,7 +121,7 @@ class Room:
     def _seat(self, visitor: Visitor) -> None:
         if self._teacher is not None:  # its old connection, not yet known to be lost
             self._desk.let_go()
-        self._teacher, self._seat_of = visitor, visitor.name
+        self._teacher, self._seat_of, self._is_at_work = visitor, visitor.name, False
         self._tell_roles()
 
     def _leave(self, visitor: Visitor) -> None:
@@ -130,8 +133,19 @@ class Room:
 
     def _tell_roles(self) -> None:
         for visitor in self._visitors:
-            visitor.tell({'role': {'teaches': visitor is self._teacher, 'seat_is_free': self._teacher is None,
+            visitor.tell({'role': {'teaches': visitor is self._teacher,
+                                   'seat_is_free': visitor is not self._teacher and not self._is_taken,
                                    'watchers': len(self._visitors) - (self._teacher is not None)}})
+
+    @property
+    def _is_taken(self) -> bool:
+        return self._teacher is not None and self._is_at_work
+
+    def _work(self) -> None:
+        """Somebody is at the page that teaches."""
+        if not self._is_at_work:
+            self._is_at_work = True
+            self._tell_roles()
 
     def _hear(self, visitor: Visitor, text: str | bytes) -> None:
         """What a page says; it is bytes when the page sent a binary message.
@@ -142,17 +156,20 @@ class Room:
         try:
             message = json.loads(text)
             if message == {'do': 'take_seat'}:
-                if self._teacher is None:
+                if not self._is_taken:
                     self._seat(visitor)
+                    self._work()
             elif visitor is not self._teacher:
                 return
             elif 'keys' in message:
                 self._desk.press(_buttons(message['keys'], count_buttons(self._desk.task.keys)),
                                  _axes(message.get('axes', [])))
+                self._work()
             elif 'let_go' in message:
                 self._desk.let_go()
             else:
                 self._desk.do(message['do'], message.get('value'))
+                self._work()
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             log.warning('dropped a message of a page: %s (%.100r)', error, text)
 

@@ -94,6 +94,23 @@ def test_a_teacher_that_comes_back_has_the_seat_again(client, desk):
     assert desk.notes == ['let go', [0, 1, 0], 'let go']
 
 
+def test_a_forgotten_page_that_was_there_first_keeps_the_seat_from_nobody(client, desk):
+    """A tab of an earlier session connects again by itself, sooner than a person opens the new address."""
+    with client.websocket_connect('/live?page=old') as old, client.websocket_connect('/live?page=new') as new:
+        assert role(old)['teaches']
+        assert role(new) == {'teaches': False, 'seat_is_free': True, 'watchers': 1}
+        new.send_json({'do': 'take_seat'})
+        assert role(new)['teaches']
+        new.send_json({'keys': [1, 0, 0]})
+        assert role(old) == {'teaches': True, 'seat_is_free': False, 'watchers': 1}  # when the other came
+        while (told := role(old))['teaches'] or told['seat_is_free']:
+            pass
+        old.send_json({'keys': [0, 1, 0]})
+        old.send_json({'do': 'take_seat'})
+        new.send_json({'do': 'pause'})
+    assert desk.notes == ['let go', [1, 0, 0], ('pause', None), 'let go']
+
+
 @pytest.mark.parametrize('said', [
     'no json', '[]', '7', '{}', '{"keys": [1, 0]}', '{"keys": [1, 0, 2]}', '{"keys": [true, 0, 0]}', '{"keys": null}',
     '{"do": "unknown"}', '{"keys": [0, 0, 0], "axes": [0.5]}', '{"keys": [0, 0, 0], "axes": [NaN, 0]}',
