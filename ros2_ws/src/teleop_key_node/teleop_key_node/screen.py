@@ -67,7 +67,12 @@ def render(scene: Scene, width: int, height: int, unicode: bool = True) -> list[
         below = [line for line in below if line[0] != importance]
     picture = draw(scene, width, max(height - len(above) - len(below), 0), unicode)
     lines = [text for _, text in above] + picture + [text for _, text in below]
-    return [line[:width].ljust(width) for line in lines[:height]]
+    return [_harmless(line)[:width].ljust(width) for line in lines[:height]]
+
+
+def _harmless(line: str) -> str:
+    """A line without control characters: names of sources and messages come from whoever is on the graph."""
+    return line if line.isprintable() else ''.join(c if c.isprintable() else '?' for c in line)
 
 
 def _fitting(width: int, *texts: str) -> str:

@@ -57,6 +57,16 @@ def test_a_ball_at_plus_x_is_left_in_the_picture():
     assert 'ball 10.0 cm left of the middle' in '\n'.join(render(SCENE, 80, 24))
 
 
+@pytest.mark.parametrize('text', ['\x1bc', '\x1b]0;a title\x07', 'two\nlines', '\x9b2J'])
+@pytest.mark.parametrize('task', [Balance(), Plate()])
+def test_what_others_say_commands_no_terminal(text, task):
+    moments = (5.0,) * len(task.axes)
+    scene = replace(SCENE, task=task, human=moments, parts=Parts(moments, moments, moments))
+    for said in ({'hand': text}, {'message': text}, {'waiting': f'{text}\n{text}'}, {'phase': text}):
+        lines = render(replace(scene, **said), 80, 24)
+        assert len(lines) == 24 and all(len(line) == 80 and line.isprintable() for line in lines)
+
+
 def test_a_positive_pitch_tips_the_left_side_down():
     for pitch, lower in ((0.04, 'left'), (-0.04, 'right')):
         rows = columns_of_dots(replace(SCENE, pitch=pitch, ball_on_tray=None))
