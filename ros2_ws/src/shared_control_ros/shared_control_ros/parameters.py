@@ -14,11 +14,13 @@
 
 """Parameters with a description, a unit and a range."""
 
+from difflib import get_close_matches
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException, ParameterException
 from rclpy.node import Node
+from shared_control.printable import shortened
 
 
 class ParameterError(ValueError):
@@ -59,3 +61,18 @@ def declare(node: Node, name: str, default: Any, description: str, *, unit: str 
         if wrong:
             raise ParameterError(f'parameter {name!r} has no choice {wrong[0]!r}. {text}')
     return value
+
+
+def unknown_parameters(node: Node) -> list[str]:
+    """What was given to a node that has declared all of its parameters, and is none of them: a line each.
+
+    ROS passes over them in silence, so that a limit with a slip in its name is not the limit.
+    """
+    given = node._parameter_overrides  # rclpy has no public way to them
+    known = list(node.get_parameters_by_prefix(''))
+    lines = []
+    for name in sorted(given.keys() - set(known)):
+        meant = get_close_matches(name, known, n=1)
+        lines.append(f'there is no parameter {shortened(name)}, and it counts nothing'
+                     + (f': is {meant[0]!r} meant?' if meant else '; `ros2 param list` shows what there is'))
+    return lines

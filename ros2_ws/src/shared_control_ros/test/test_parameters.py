@@ -15,8 +15,9 @@
 """Parameters with ranges and choices."""
 
 import pytest
+from rclpy.node import Node
 from rclpy.parameter import Parameter
-from shared_control_ros.parameters import ParameterError, declare
+from shared_control_ros.parameters import ParameterError, declare, unknown_parameters
 
 
 @pytest.fixture
@@ -45,3 +46,13 @@ def test_a_default_that_is_no_choice_is_refused(node):
 def test_parameters_are_fixed_unless_told_otherwise(node):
     declare(node, 'my_size', 3, 'How large.')
     assert not node.set_parameters([Parameter('my_size', value=4)])[0].successful
+
+
+def test_a_name_with_a_slip_in_it_is_said(observer):
+    given = [Parameter('moment_limt', value=5.0), Parameter('wings', value=2), Parameter('use_sim_time', value=False)]
+    node = Node('given', context=observer.context, parameter_overrides=given)
+    declare(node, 'moment_limit', 20.0, 'The most.')
+    slip, strange = unknown_parameters(node)
+    node.destroy_node()
+    assert slip == "there is no parameter 'moment_limt', and it counts nothing: is 'moment_limit' meant?"
+    assert "no parameter 'wings'" in strange and 'ros2 param list' in strange
