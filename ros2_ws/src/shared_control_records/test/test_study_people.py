@@ -400,8 +400,9 @@ def test_people_are_asked_where_they_teach(study):
     _, plan = study
     people = plan.people.model_copy(update={'teach_on': 'page', 'session_options': []})
     assert asker_of(people).address == 'http://127.0.0.1:8088/'
-    for options in (['--page', '127.0.0.1:9000'], ['--page=127.0.0.1:9000']):
-        assert asker_of(people.model_copy(update={'session_options': options})).address == 'http://127.0.0.1:9000/'
+    for options in (['--page', '127.0.0.1:9000'], ['--page=127.0.0.1:9000'], ['--page', '[::1]:9000']):
+        host_and_port = options[-1].removeprefix('--page=')
+        assert asker_of(people.model_copy(update={'session_options': options})).address == f'http://{host_and_port}/'
     for wrong in ('0.0.0.0:8088', '127.0.0.1:0', '127.0.0.1'):
         with pytest.raises(ValueError):
             asker_of(people.model_copy(update={'session_options': ['--page', wrong]}))

@@ -124,8 +124,8 @@ def test_does_not_enable_itself_after_it_was_disabled(start_node, robot):
     assert robot.run(off=0.0) == []
 
 
-def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_node, robot):
-    """Its driver was started anew, and a hand has moved the arm; near the reference the controller goes on."""
+def start_as_on_a_robot(start_node, robot):
+    """A person enables it."""
     node = start_node('torque_ctrl_node')
 
     def enabled():
@@ -134,12 +134,25 @@ def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_no
 
     robot.observer.spin(enabled)
     robot.run_until_answered()
+    return node
+
+
+def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_node, robot):
+    """Its driver was started anew, and a hand has moved the arm; near the reference the controller goes on."""
+    node = start_as_on_a_robot(start_node, robot)
     robot.observer.spin_for(1.5)
     robot.run_until_answered(off=0.1)
     robot.observer.spin_for(1.5)
     assert robot.run(off=0.5) == []
     assert 'disabled: no joint states came for a while, and now panda_joint1 is 0.50 rad off' in node.log()
     assert robot.run(off=0.0) == [], 'until somebody enables it'
+
+
+def test_a_robot_that_comes_back_after_it_was_disabled_gets_no_rest_of_the_damping(start_node, robot):
+    start_as_on_a_robot(start_node, robot)
+    assert robot.ask(contract.ENABLE_SERVICE, SetBool, data=False).success
+    robot.observer.spin_for(1.5)
+    assert robot.run() == []
 
 
 def test_a_controller_that_leaves_brings_the_arm_to_rest(start_node, robot):

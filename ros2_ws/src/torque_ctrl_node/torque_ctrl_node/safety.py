@@ -101,10 +101,13 @@ class Safety:
         A robot whose driver was started anew may stand elsewhere than where it was when somebody enabled the
         controller. A simulator's stands where it stood before a pause, and harms nobody.
         """
-        if self.enabled and not self._beside_a_simulator and (away := far_from_home(self._spec, q)):
+        if self._beside_a_simulator:
+            return
+        if self.enabled and (away := far_from_home(self._spec, q)):
             self.end_torques()
-            self.stopping_ticks = 0  # what has had no torques for so long is at rest
             self._changed(f'disabled: no joint states came for a while, and now {away}')
+        if not self.enabled:
+            self.stopping_ticks = 0  # what has had no torques for so long is at rest
 
     def hear(self) -> None:
         """Look whether somebody has published an emergency stop; false means nothing: only the service ends one."""

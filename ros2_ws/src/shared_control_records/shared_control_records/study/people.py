@@ -74,7 +74,7 @@ def asker_of(people: People) -> Asker:
         host, _, number = given.rpartition(':')
         if not number.isdecimal() or not 0 < int(number) < 65536:
             raise ValueError(f'--page {given}: a study needs HOST:PORT with a port from 1 to 65535')
-        port = int(number)
+        host, port = host.strip('[]'), int(number)  # as argparse reads it for the session
     page = FormPage(host, port)
     print(f'\n    The participant is asked, and teaches, here: {page.address}\n', flush=True)
     return page
