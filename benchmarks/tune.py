@@ -114,6 +114,10 @@ _OFF_POLICY = {
     'tau': (0.005, 0.02),
     'noise_seconds': (0.0, 0.5),
 }
+_OFF_POLICY_FIRST = {
+    'hidden': (64, 64), 'learning_rate': 1e-3, 'batch_size': 128, 'updates_a_step': 1.0, 'gamma': 0.99, 'tau': 0.005,
+    'noise_seconds': 0.5}
+"""What was in use before the search."""
 _BALANCE = (Rung(16, 6, 1), Rung(5, 10, 2), Rung(2, 10, 6))
 SUBJECTS = {
     'alone': Subject(
@@ -125,13 +129,17 @@ SUBJECTS = {
         DCOACH, lambda settings, drawn: replace(settings, **drawn),
         {'hidden': ((), (16, 16), (32, 32)), 'error': (0.1, 0.25, 0.5, 1.0),
          'learning_rate': (0.001, 0.003, 0.01, 0.03), 'memory': (500, 1000, 3000), 'batch_size': (16, 32, 64),
-         'replay_every': (1, 5, 10)}, _BALANCE, sharings=('additive', 'override')),
+         'replay_every': (1, 5, 10)}, _BALANCE,
+        ({'hidden': (32, 32), 'error': 0.5, 'learning_rate': 0.003, 'memory': 3000, 'batch_size': 32,
+          'replay_every': 10},), sharings=('additive', 'override')),
     'pvp': Subject(
         PVP, lambda settings, drawn: replace(settings, **drawn),
-        {**_OFF_POLICY, 'exploring_std': (0.05, 0.1, 0.2)}, _BALANCE, sharings=('override',)),
+        {**_OFF_POLICY, 'exploring_std': (0.05, 0.1, 0.2)}, _BALANCE, ({**_OFF_POLICY_FIRST, 'exploring_std': 0.1},),
+        sharings=('override',)),
     'sac_interventions': Subject(
         SAC_INTERVENTIONS, lambda settings, drawn: replace(settings, **drawn),
-        {**_OFF_POLICY, 'initial_entropy_weight': (0.01, 0.1, 0.5)}, _BALANCE, sharings=('override',)),
+        {**_OFF_POLICY, 'initial_entropy_weight': (0.01, 0.1, 0.5)}, _BALANCE,
+        ({**_OFF_POLICY_FIRST, 'initial_entropy_weight': 0.1},), sharings=('override',)),
 }
 """By the argument."""
 

@@ -122,7 +122,7 @@ class HeldKeys:
     """Between two repetitions, s: 10 a second on a Linux console, 30 elsewhere. Nobody presses one key so quickly."""
 
     FIRST_REPETITION_WITHIN = 0.8
-    """Of the press, s."""
+    """After the press, s."""
 
     def __init__(self, period: float) -> None:
         self._longest = 2.0 * period
