@@ -47,10 +47,10 @@ def parallel():
 
 def test_a_run_is_the_same_by_one_process_and_by_several(tmp_path):
     alone, together = (
-        train(SHORT, None, 1, 3, physics='mujoco', folder=tmp_path / str(processes), processes=processes)
-        for processes in (1, 3))
-    assert len(alone.tests) == 3 and alone.tests == together.tests
-    one, several = ((tmp_path / name / POLICY_NAME).read_bytes() for name in ('1', '3'))
+        train(SHORT, None, 1, 2, physics='mujoco', folder=tmp_path / str(processes), processes=processes)
+        for processes in (1, 2))
+    assert len(alone.tests) == 2 and alone.tests == together.tests
+    one, several = ((tmp_path / name / POLICY_NAME).read_bytes() for name in ('1', '2'))
     assert one == several
     assert not multiprocessing.active_children()
 
