@@ -111,17 +111,17 @@ class DCoachSettings:
 
     __pydantic_config__: ClassVar = _STRICT
 
-    hidden: Layers = (32, 32)
+    hidden: Layers = (16, 16)
     """Units of the policy's hidden layers."""
-    error: Positive = 0.5
+    error: Positive = 1.0
     """e: how far a correction moves the label, in actions."""
     learning_rate: Positive = 0.003
     """That of gradient descent."""
     memory: Annotated[int, Field(ge=1, le=100_000)] = 3000
     """K: so many corrections are remembered."""
-    batch_size: Annotated[int, Field(ge=1, le=100_000)] = 32
+    batch_size: Annotated[int, Field(ge=1, le=100_000)] = 64
     """N: corrections of a minibatch."""
-    replay_every: Annotated[int, Field(ge=1, le=100_000)] = 10
+    replay_every: Annotated[int, Field(ge=1, le=100_000)] = 1
     """b: steps from one minibatch to the next."""
 
 
@@ -131,18 +131,18 @@ class OffPolicySettings:
 
     __pydantic_config__: ClassVar = _STRICT
 
-    hidden: Layers = (64, 64)
+    hidden: Layers = (32, 32)
     """Units of the hidden layers of policy and critics."""
-    learning_rate: Positive = 1e-3
+    learning_rate: Positive = 3e-4
     """That of Adam."""
     batch_size: Annotated[int, Field(ge=2, le=10_000)] = 128
     """Half of it interventions."""
-    updates_a_step: Annotated[float, Field(gt=0, le=20)] = 1.0
+    updates_a_step: Annotated[float, Field(gt=0, le=20)] = 2.0
     """Gradient steps for each step of the robot, after the episode."""
-    gamma: Fraction = 0.99
-    tau: Fraction = 0.005
+    gamma: Fraction = 0.98
+    tau: Fraction = 0.02
     """How far the target networks follow in each gradient step."""
-    noise_seconds: NotNegative = 0.5
+    noise_seconds: NotNegative = 0.0
     """Correlation time of the exploring noise, s; 0: white."""
 
 
@@ -150,7 +150,7 @@ class OffPolicySettings:
 class SacSettings(OffPolicySettings):
     """Settings of :class:`.sac.SacInterventions`."""
 
-    initial_entropy_weight: Positive = 0.1
+    initial_entropy_weight: Positive = 0.01
     """What entropy weighs beside the reward at first; it is learned."""
 
 
@@ -158,7 +158,9 @@ class SacSettings(OffPolicySettings):
 class PvpSettings(OffPolicySettings):
     """Settings of :class:`.pvp.Pvp`."""
 
-    exploring_std: NotNegative = 0.1
+    hidden: Layers = (128, 128)
+    gamma: Fraction = 0.99
+    exploring_std: NotNegative = 0.05
     """Standard deviation of the noise, in actions."""
 
 
