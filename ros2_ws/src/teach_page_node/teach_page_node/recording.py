@@ -177,10 +177,10 @@ class Recording:
     def _history(self, now_ns: int) -> History:
         history = History()
         returns = self._bag.training[contract.EPISODE_RETURN]
-        for index, (at_ns, value) in enumerate(zip(returns.received_ns, returns.values, strict=True)):
+        nexts = [*returns.received_ns, now_ns + 1][1:]
+        for at_ns, next_ns, value in zip(returns.received_ns, nexts, returns.values, strict=True):
             if at_ns > now_ns:
                 break
-            next_ns = returns.received_ns[index + 1] if index + 1 < len(returns.received_ns) else now_ns + 1
             if _latest(self._bag.training[contract.PHASE], int(at_ns)) not in ('test', 'done'):
                 history.add(float(value), _latest(self._bag.training[contract.HUMAN_SHARE], int(at_ns)))
                 said = [judgement.verdict for judgement in self._bag.judgements

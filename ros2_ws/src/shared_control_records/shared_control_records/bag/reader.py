@@ -125,13 +125,15 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
 
 def _check_finished(path: Path) -> None:
     check_is_bag(path)
-    folder = path if path.is_dir() else path.parent
-    torn = [file.name for file in (bag_files(path) if path.is_dir() else [path]) if not is_finished(file)]
-    missing = path.is_dir() and not (path / 'metadata.yaml').is_file()
-    unlisted = [] if torn or missing or not path.is_dir() else [file.name for file in unlisted_files(path)]
-    if torn or missing or unlisted:
-        what = (f'{", ".join(torn)} has no index' if torn else 'it has no metadata.yaml' if missing
-                else f'its metadata.yaml does not name {", ".join(unlisted)}')
+    files, folder = (bag_files(path), path) if path.is_dir() else ([path], path.parent)
+    what = ''
+    if torn := [file.name for file in files if not is_finished(file)]:
+        what = f'{", ".join(torn)} has no index'
+    elif path.is_dir() and not (path / 'metadata.yaml').is_file():
+        what = 'it has no metadata.yaml'
+    elif path.is_dir() and (unlisted := [file.name for file in unlisted_files(path)]):
+        what = f'its metadata.yaml does not name {", ".join(unlisted)}'
+    if what:
         raise BagReadError(f'the recording of the bag {path} was not finished: {what}; '
                            f'`shared-control recover {folder}` finishes it')
 
