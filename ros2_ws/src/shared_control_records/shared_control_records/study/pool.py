@@ -44,24 +44,28 @@ def on_this_machine(folder: Path, names: Sequence[str], workers: int) -> Generat
     """
     waiting = deque(names)
     running: dict[Future, tuple[str, ProcessPoolExecutor]] = {}
+    free: list[ProcessPoolExecutor] = []
     try:
         while waiting or running:
             while waiting and len(running) < workers:
                 name = waiting.popleft()
-                # A pool for each job: a process that is killed breaks its pool, and the others are to go on.
-                pool = ProcessPoolExecutor(1, multiprocessing.get_context('spawn'), begin_worker, (os.getpid(),))
+                pool = free.pop() if free else _process()
                 running[pool.submit(_do, folder, name)] = name, pool
             ended, _ = wait(running, POLL_SECONDS, FIRST_COMPLETED)
             outcomes = []
             for future in ended:
                 name, pool = running.pop(future)
-                pool.shutdown()
-                outcomes.append(Outcome(name, _reason(future.exception())))
+                error = future.exception()
+                if isinstance(error, BrokenProcessPool):
+                    pool.shutdown()
+                else:
+                    free.append(pool)
+                outcomes.append(Outcome(name, _reason(error)))
             yield outcomes
     finally:
         for process in multiprocessing.active_children():  # the command has no others
             process.kill()
-        for _, pool in running.values():
+        for pool in [*free, *(pool for _, pool in running.values())]:
             pool.shutdown()
 
 
@@ -91,6 +95,11 @@ def on_ray(folder: Path, names: Sequence[str], address: str) -> Generator[list[O
             yield [Outcome(running.pop(reference), _ray_error(ray, reference)) for reference in ended]
     finally:
         ray.shutdown()
+
+
+def _process() -> ProcessPoolExecutor:
+    """A pool of one process: one that is killed breaks its pool, and the others are to go on."""
+    return ProcessPoolExecutor(1, multiprocessing.get_context('spawn'), begin_worker, (os.getpid(),))
 
 
 def _do(folder: Path, name: str) -> None:
