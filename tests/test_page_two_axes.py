@@ -92,7 +92,10 @@ class TestTheDetourOnThePage:
                              f'the ball rolls: {shown}')
         browser.type(Keys.SPACE)
 
-    def test_a_gamepad_pushes_as_far_as_it_is_held(self, browser, holds):
+    def test_a_gamepad_pushes_as_far_as_it_is_held(self, browser, holds, observer):
+        holds(0.0, 0.0)
+        browser.script(PAD + 'pad.axes = [-1, -1]')  # a device whose axes rest at an end
+        observer.spin_for(0.3)
         holds(0.0, 0.0)
         browser.script(PAD)  # lies there: its stick trembles
         browser.script('pad.axes = [0.05, -0.04]')

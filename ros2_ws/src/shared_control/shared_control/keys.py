@@ -80,6 +80,8 @@ class KeyMoment:
 
 BUTTONS = 3
 """Buttons that every source of keys has: left, right, space."""
+MAX_SOURCES = 100
+"""Sources of keys that are told apart."""
 
 
 def count_buttons(keys: KeyMap) -> int:
@@ -108,3 +110,24 @@ class KeyPresses:
         pressed = [key for key in Key if down[key] and not self._down[key]]
         self._down = down
         return pressed
+
+
+class PressesBySource:
+    """:class:`KeyPresses` for each source of keys, of those heard last: anybody may send under any name."""
+
+    def __init__(self) -> None:
+        self._sources: dict[str, KeyPresses] = {}
+
+    def update(self, source: str, buttons: Sequence[int]) -> list[Key]:
+        """See :meth:`KeyPresses.update`."""
+        presses = self._sources.get(source) or KeyPresses()
+        pressed = presses.update(buttons)
+        self._sources.pop(source, None)
+        self._sources[source] = presses  # the one heard last is last
+        if len(self._sources) > MAX_SOURCES:
+            del self._sources[next(iter(self._sources))]
+        return pressed
+
+    def forget(self, source: str) -> None:
+        """A source is gone: a key that is down in its next state was pressed."""
+        self._sources.pop(source, None)

@@ -15,7 +15,7 @@
 """Keys to M_yh."""
 
 import pytest
-from shared_control.keys import Key, KeyMoment, KeyPresses
+from shared_control.keys import MAX_SOURCES, Key, KeyMoment, KeyPresses, PressesBySource
 
 
 def test_each_press_is_five_newton_metres_and_space_is_zero():
@@ -55,3 +55,15 @@ def test_a_press_is_a_rising_edge():
 def test_too_few_buttons_are_refused():
     with pytest.raises(ValueError, match='3 buttons'):
         KeyPresses().update([1])
+
+
+def test_sources_are_told_apart_as_long_as_they_are_not_too_many():
+    presses = PressesBySource()
+    assert presses.update('a', [1, 0, 0]) == [Key.LEFT] and presses.update('b', [1, 0, 0]) == [Key.LEFT]
+    assert presses.update('a', [1, 0, 0]) == []
+    presses.forget('a')
+    assert presses.update('a', [1, 0, 0]) == [Key.LEFT]
+    for number in range(10 * MAX_SOURCES):
+        presses.update(f'made up {number}', [0, 0, 0])
+        assert presses.update('b', [1, 0, 0]) == [], 'who is heard all the while'
+    assert presses.update('a', [1, 0, 0]) == [Key.LEFT]

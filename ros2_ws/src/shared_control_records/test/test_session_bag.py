@@ -25,7 +25,7 @@ from shared_control_records.bag.ball_tracks import broken_off, episode_tracks
 from shared_control_records.bag.checks import check_bag
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_records.bag.ticks import digests
-from shared_control_records.bag.timing import simulator_runs
+from shared_control_records.bag.timing import simulator_runs, timing_of
 from shared_control_records.export.frames import episode_frames
 from shared_control_testing import sessions as made
 
@@ -98,6 +98,18 @@ def test_a_simulator_is_known_by_what_it_reports(tmp_path):
         recording.add(contract.DIAGNOSTICS, at + 1, made.status(at, 'mock_panda_node', ticks=5 * ticks))
     runs = simulator_runs(read_bag(recording.write(tmp_path / 'bag')))
     assert [run.number('ticks') for run in runs] == [1900, 700]
+
+
+@pytest.mark.parametrize('figures', [{'running_seconds': 'inf'}, {'tick_p50_ms': 'nan'}, {'late_ticks': 'many'},
+                                     {'running_seconds': '0.0'}])
+def test_figures_that_are_none_are_not_known(tmp_path, figures):
+    """No NaN gets into a report's JSON, which no other reader takes."""
+    of_one = {'ticks': 1000, 'tick_p50_ms': '0.61', 'tick_p99_ms': '0.93', 'late_ticks': '10',
+              'running_seconds': '1.001', 'simulated_seconds': '1.0'}
+    for name, reported, known in (('good', of_one, True), ('bad', of_one | figures, False)):
+        recording = made.Recording()
+        recording.add(contract.DIAGNOSTICS, made.START_NS, made.status(made.START_NS, 'panda_sim_node', **reported))
+        assert (timing_of(read_bag(recording.write(tmp_path / name))) is not None) is known
 
 
 def test_a_bag_of_several_blocks_with_odd_messages(recording, tmp_path, monkeypatch):

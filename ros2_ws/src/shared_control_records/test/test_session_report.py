@@ -247,6 +247,9 @@ def test_damaged_tables_are_named(tmp_path):
     (tmp_path / 'episodes.csv').write_text('episode,phase\n1,teach\nx,teach\n')
     with pytest.raises(ValueError, match=r'episodes.csv, line 3'):
         read_episodes(tmp_path / 'episodes.csv')
+    (tmp_path / 'episodes.csv').write_text('episode,phase,seconds\n1,teach,nan\n')
+    with pytest.raises(ValueError, match=r'episodes.csv, line 2.*seconds is nan'):
+        read_episodes(tmp_path / 'episodes.csv')
     assert read_episodes(tmp_path / 'none.csv') == []
 
 

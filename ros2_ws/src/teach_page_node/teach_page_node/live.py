@@ -22,7 +22,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import PAGE, Key, KeyPresses, count_buttons
+from shared_control.keys import PAGE, Key, PressesBySource, count_buttons
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
@@ -62,7 +62,7 @@ class LiveDesk:
         self._restarts = 0
         self._human = Moment(node, contract.HUMAN_WRENCH, task)
         self._heard = Polled(node, contract.KEYS, depth=50)
-        self._presses: dict[str, KeyPresses] = {}
+        self._presses = PressesBySource()
         self._hand = ''
         self._lit_until = [0.0] * count_buttons(task.keys)
         self._history = History()
@@ -136,7 +136,7 @@ class LiveDesk:
         while (joy := self._heard.take()) is not None:
             source = joy.header.frame_id
             try:
-                pressed = self._presses.setdefault(source, KeyPresses()).update(joy.buttons)
+                pressed = self._presses.update(source, joy.buttons)
             except ValueError:
                 continue  # teleop_key_node complains
             if pressed:

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment, KeyPresses
+from ..keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, KeyMoment, PressesBySource
 from ..sticks import DEAD_BAND, StickMoment
 from ..tasks.task import Task
 
@@ -40,7 +40,7 @@ class KeyDevice:
                  dead_band: float = DEAD_BAND, curve: float = 1.0):
         self._limit = limit
         self._moment = KeyMoment(task.keys, keystroke, limit)
-        self._presses: dict[str, KeyPresses] = {}
+        self._presses = PressesBySource()
         self._stick = StickMoment(task.keys, limit, dead_band, curve)
         self._held: dict[str, np.ndarray] = {}
 
@@ -52,7 +52,7 @@ class KeyDevice:
     def update(self, source: str, axes: Sequence[float], buttons: Sequence[int]) -> bool:
         """See :class:`Device`. A key that is held down at a :meth:`release` counts when it is pressed again."""
         held = self._stick.of(axes)
-        pressed = self._presses.setdefault(source, KeyPresses()).update(buttons)
+        pressed = self._presses.update(source, buttons)
         for key in pressed:
             self._moment.press(key)
         self._held[source] = held
@@ -60,7 +60,7 @@ class KeyDevice:
 
     def forget(self, source: str) -> None:
         """See :class:`Device`."""
-        self._presses.pop(source, None)
+        self._presses.forget(source)
         self._held.pop(source, None)
 
     def release(self) -> None:

@@ -30,7 +30,7 @@ from rosbags.rosbag2.storage_mcap import McapReader
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
 from shared_control.contract import Topic
-from shared_control.keys import KeyPresses
+from shared_control.keys import PressesBySource
 from shared_control.printable import ECHO_MAX, cut, escaped
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
@@ -209,7 +209,7 @@ class _Collector:
             **{topic: partial(self._add_value, topic) for topic in self._rows},
             contract.KEYS.full_name: self._add_keys, contract.VERDICT.full_name: self._add_judgement,
             contract.DIAGNOSTICS.full_name: self._add_statuses}
-        self._keys: dict[str, KeyPresses] = {}
+        self._keys = PressesBySource()
         self._keys_before: bytes | None = None
         """What followed the stamp of the last usable message of keys."""
         self._presses: list[Press] = []
@@ -355,7 +355,7 @@ class _Collector:
 
     def _add_keys(self, received_ns: int, message: Any) -> None:
         source = message.header.frame_id
-        pressed = self._keys.setdefault(source, KeyPresses()).update(message.buttons.tolist())
+        pressed = self._keys.update(source, message.buttons.tolist())
         is_held = any(self._stick.of([axis]).any() for axis in message.axes.tolist())
         self._presses += [Press(received_ns, source, key) for key in pressed]
         for kind, is_used in (('keys', pressed), ('stick', is_held)):

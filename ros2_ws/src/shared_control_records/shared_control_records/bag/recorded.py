@@ -19,6 +19,7 @@
 received.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -147,8 +148,9 @@ class Status:
     values: dict[str, str]
 
     def number(self, key: str) -> float | None:
-        """One of the values as a number; None when there is none."""
+        """One of the values as a number; None when there is none, or none that is finite."""
         try:
-            return float(self.values[key])
+            value = float(self.values[key])
         except (KeyError, ValueError):
             return None
+        return value if math.isfinite(value) else None

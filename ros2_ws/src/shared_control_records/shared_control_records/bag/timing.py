@@ -14,7 +14,8 @@
 
 """How fast a session ran, from what the simulator reports of itself."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import astuple, dataclass
 from itertools import pairwise
 
 from .reader import Bag
@@ -52,15 +53,23 @@ def simulator_runs(bag: Bag) -> list[Status]:
 
 def timing_of(bag: Bag) -> Timing | None:
     """None when the simulator never reported, or does not report these figures (a real robot)."""
-    runs = [run.values for run in simulator_runs(bag)]
-    try:
-        totals = {key: sum(float(run[key]) for run in runs)
-                  for key in ('ticks', 'late_ticks', 'running_seconds', 'simulated_seconds')}
-        longest = max(runs, key=lambda run: float(run['ticks']))
-        return Timing(
-            control_rate_hz=totals['ticks'] / totals['running_seconds'],
-            real_time_factor=totals['simulated_seconds'] / totals['running_seconds'],
-            tick_p50_ms=float(longest['tick_p50_ms']), tick_p99_ms=float(longest['tick_p99_ms']),
-            late_tick_ratio=totals['late_ticks'] / totals['ticks'])
-    except (KeyError, ValueError, ZeroDivisionError):
+    runs = simulator_runs(bag)
+    if not runs:
         return None
+    totals = {key: sum(_known(run.number(key)) for run in runs)
+              for key in (*OF_A_SIMULATOR, 'late_ticks', 'simulated_seconds')}
+    longest = max(runs, key=lambda run: _known(run.number('ticks')))
+    timing = Timing(
+        control_rate_hz=_ratio(totals['ticks'], totals['running_seconds']),
+        real_time_factor=_ratio(totals['simulated_seconds'], totals['running_seconds']),
+        tick_p50_ms=_known(longest.number('tick_p50_ms')), tick_p99_ms=_known(longest.number('tick_p99_ms')),
+        late_tick_ratio=_ratio(totals['late_ticks'], totals['ticks']))
+    return timing if all(map(math.isfinite, astuple(timing))) else None
+
+
+def _known(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _ratio(part: float, whole: float) -> float:
+    return part / whole if whole else math.nan

@@ -16,6 +16,7 @@
 
 import csv
 import io
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -90,4 +91,9 @@ def write_episodes(rows: list[EpisodeRow], path: Path) -> None:
 
 def _number(row: dict[str, str], column: str) -> float | None:
     text = row.get(column)
-    return float(text) if text else None
+    if not text:
+        return None
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f'{column} is {text}')
+    return value

@@ -7,6 +7,7 @@ const PULL_PX = 80; // all the way
 const PAD_KEYS = { 0: "space", 12: "up", 13: "down", 14: "left", 15: "right" }; // of a pad that browsers know
 
 const within = (value) => Math.max(-1, Math.min(value || 0, 1));
+const isHeld = (axes) => axes.some((value) => Math.abs(value) > 0.5);
 
 // A pull at the drawing: from where it is touched.
 export function watchPull(counts, changed) {
@@ -63,6 +64,7 @@ export function watchPull(counts, changed) {
 // The left sticks of all gamepads; their directions and first button are keys. pressed(name, by, isDown).
 export function watchGamepads(pressed, changed) {
   let axes = null;
+  let rested = []; // whose stick has been seen let go of: some devices have axes that rest at an end
   let down = new Map(); // names of keys, by pad and button
   setInterval(() => {
     const pads = (navigator.getGamepads?.() ?? []).filter((pad) => pad?.connected);
@@ -72,8 +74,11 @@ export function watchGamepads(pressed, changed) {
       .map(([button, name]) => [`pad ${pad.index} ${button}`, name])));
     before.forEach((name, by) => down.has(by) || pressed(name, by, false)); // a pad that was pulled out, too
     down.forEach((name, by) => before.has(by) || pressed(name, by, true));
-    const held = pads.reduce(([x, y], pad) => [x - within(pad.axes[0]), y - within(pad.axes[1])], [0, 0]);
-    const isNew = axes === null ? held.some((value) => Math.abs(value) > 0.5) // a pad that lies there is not in use
+    rested = pads.filter((pad) => rested.includes(pad.index) || !isHeld([pad.axes[0], pad.axes[1]]))
+      .map((pad) => pad.index);
+    const held = pads.filter((pad) => rested.includes(pad.index))
+      .reduce(([x, y], pad) => [x - within(pad.axes[0]), y - within(pad.axes[1])], [0, 0]);
+    const isNew = axes === null ? isHeld(held) // a pad that lies there is not in use
       : held.some((value, i) => value !== axes[i]);
     if (!isNew) return;
     axes = held;
