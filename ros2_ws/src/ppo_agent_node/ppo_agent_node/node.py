@@ -36,6 +36,7 @@ from shared_control.files import write_atomically
 from shared_control.plant import PlantInterrupted
 from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.rates import POLICY_PERIOD
+from shared_control.verdict import Verdict
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
 from shared_control_learning.episode_table import TABLE_NAME, EpisodeTable
@@ -56,6 +57,7 @@ from shared_control_ros.runner import Stop, run
 from std_srvs.srv import Trigger
 
 from .graph_plant import GraphPlant
+from .kept_policy import KeptPolicy
 from .training_topics import TrainingTopics
 from .verdicts import Verdicts
 
@@ -121,6 +123,7 @@ class PpoAgentNode(Callbacks):
 
         self._teaches = mode == 'teach'
         self._policy_path: Path | None = None
+        self._kept: KeptPolicy | None = None
         self._table: EpisodeTable | None = None
         if self._teaches:
             self._learner = self._make_learner(chosen, seed, output, resume)
@@ -160,6 +163,7 @@ class PpoAgentNode(Callbacks):
             folder = Path(output)
             folder.mkdir(parents=True, exist_ok=True)
             self._policy_path = folder / POLICY_NAME
+            self._kept = KeptPolicy(self._policy_path)
             if self._policy_path.exists():
                 learner = _load(self._policy_path, 'output')
                 for parameter, given, stored in (
@@ -257,8 +261,15 @@ class PpoAgentNode(Callbacks):
             raise _Stopped
 
     def _judged(self, episode: Episode) -> None:
-        if self._table is not None:
+        if self._table is None or self._kept is None:
+            return
+        # In this order: an episode that is not discarded and not in the policy counts as broken off on resuming.
+        if episode.verdict is Verdict.DISCARD:
+            self._kept.drop_last()
             self._table.amend(episode)
+        else:
+            self._table.amend(episode)
+            self._kept.keep_last()
 
     def _on_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         left = self._practice.left
@@ -327,9 +338,9 @@ class PpoAgentNode(Callbacks):
 
     def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
         """See :class:`Callbacks`."""
-        if self._table is not None and self._policy_path is not None:
+        if self._table is not None and self._kept is not None:
             self._table.append(episode)  # before the learner: a row too many is dropped on resuming
-            save_policy(self._learner, self._policy_path)
+            self._kept.learned(self._learner)
         self._episode = None
         self._seconds_left -= len(episode) * POLICY_PERIOD + episode.learn_seconds
         self.node.get_logger().info(
@@ -337,6 +348,8 @@ class PpoAgentNode(Callbacks):
             f'learned in {episode.learn_seconds:.2f} s')
         self._take_a_break(self._ended)
         self._attend()
+        if self._kept is not None:
+            self._kept.settle()
 
     def episode_unlearned(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
@@ -345,7 +358,7 @@ class PpoAgentNode(Callbacks):
             if self._learner.episode:
                 save_policy(self._learner, self._policy_path)
             else:
-                self._policy_path.unlink()  # as before the first episode: a learner that has learned nothing is none
+                self._policy_path.unlink(missing_ok=True)  # as before the first episode: a learner that has learned nothing is none
         self.node.get_logger().info(f'episode {episode.number} is discarded: it is unlearned, and taught again')
 
     def episode_tested(self, episode: Episode) -> None:

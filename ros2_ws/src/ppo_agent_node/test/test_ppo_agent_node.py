@@ -141,18 +141,27 @@ def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again
     def verdicts():
         return [(message.key, message.value) for message in heard[contract.VERDICT.name]]
     say = observer.publisher(contract.HUMAN_VERDICT)
-    agent = start_node('ppo_agent_node', episodes=1, episode_seconds=2.0, output=output, break_seconds=5.0)
+
+    def rows():
+        """Of ended episodes: a busy machine may void one."""
+        return [(row['episode'], row['verdict']) for row in read_rows(output / 'episodes.csv') if row['phase'] == 'teach']
+    parameters = {'episodes': 1, 'episode_seconds': 2.0, 'output': output, 'break_seconds': 5.0}
+    agent = start_node('ppo_agent_node', **parameters)
     observer.spin(lambda: verdicts() == [('teach 1', '')], EPISODE_TIMEOUT, 'the first episode ends')
     for word in ('failure', 'discard'):
         say.publish(String(data=word))
     observer.spin(lambda: len(verdicts()) == 4, EPISODE_TIMEOUT, 'it ends again')
+    assert 'episode 1 is discarded: it is unlearned' in agent.log()
+    say.publish(String(data='discard'))
+    observer.spin(lambda: rows() == [('1', 'discard')] * 2, what='it is discarded again')
+    agent.stop(signal.SIGKILL)
+    agent = start_node('ppo_agent_node', **parameters)
+    observer.spin(lambda: len(verdicts()) == 6, EPISODE_TIMEOUT, 'it ends after the kill, which has not kept it')
     say.publish(String(data='success'))
     assert exit_code(observer, agent) == 0, agent.log()
-    assert 'episode 1 is discarded: it is unlearned' in agent.log()
-    assert verdicts() == [('teach 1', word) for word in ('', 'failure', 'discard', '', 'success')]
+    assert verdicts() == [('teach 1', word) for word in ('', 'failure', 'discard', '', 'discard', '', 'success')]
     assert {message.data for message in heard[contract.EPISODE.name]} == {1}
-    rows = [row for row in read_rows(output / 'episodes.csv') if row['phase'] == 'teach']  # a busy machine may void one
-    assert [(row['episode'], row['verdict']) for row in rows] == [('1', 'discard'), ('1', 'success')]
+    assert rows() == [('1', 'discard'), ('1', 'discard'), ('1', 'success')]
     assert load_policy(output / 'policy.safetensors').episode == 1
 
 
