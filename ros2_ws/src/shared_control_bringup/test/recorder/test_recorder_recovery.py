@@ -22,6 +22,7 @@ import sys
 import pytest
 import yaml
 from mcap.reader import make_reader
+from mcap.writer import MCAP0_MAGIC
 from rosbags.rosbag2 import Reader
 from shared_control_records.bag import BagError, annotate, recover
 from shared_control_records.bag.last_sent import last_sent
@@ -119,6 +120,43 @@ def test_a_file_that_is_spoilt_before_its_end_is_left_as_it_is(tmp_path):
     with pytest.raises(BagError, match='is damaged before its end'):
         recover(tmp_path / 'bag')
     assert path.read_bytes() == content
+
+
+@pytest.mark.parametrize('flip', [0x01, 0x08, 0x40])
+def test_whichever_bit_is_flipped_no_whole_chunk_before_the_last_is_lost(tmp_path, flip):
+    """Not in silence: the file is left as it is, then."""
+    path, ends = record(tmp_path / 'bag', finish=False)
+    whole, refused = path.read_bytes(), 0
+    for place in range(len(MCAP0_MAGIC), len(whole), 5):
+        content = bytearray(whole)
+        content[place] ^= flip
+        path.write_bytes(content)
+        try:
+            recover(tmp_path / 'bag')
+        except BagError:
+            refused += 1
+            assert path.read_bytes() == content
+            continue
+        kept = messages(path)
+        lost = PER_CHUNK if place >= ends[-2] else 0
+        assert len(kept) >= CHUNKS * PER_CHUNK - lost, f'byte {place}'
+        path.unlink()
+    assert refused > 10
+
+
+@pytest.mark.parametrize('chunk', range(CHUNKS))
+def test_a_page_of_zeros_in_the_middle_is_damage(tmp_path, chunk):
+    path, ends = record(tmp_path / 'bag', finish=False)
+    content = bytearray(path.read_bytes())
+    content[ends[chunk]:ends[chunk] + 60] = bytes(60)
+    path.write_bytes(content)
+    if chunk < CHUNKS - 1:
+        with pytest.raises(BagError, match=r'is damaged before its end \(about byte'):
+            recover(tmp_path / 'bag')
+        assert path.read_bytes() == content
+    else:  # nobody can tell that from a writer that was killed
+        [recovered] = recover(tmp_path / 'bag')
+        assert recovered.messages == chunk * PER_CHUNK
 
 
 def test_zeros_that_a_power_cut_leaves_are_cut_off(tmp_path):

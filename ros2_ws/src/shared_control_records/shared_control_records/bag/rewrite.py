@@ -20,19 +20,17 @@ that leaves the file as it was.
 """
 
 import os
-import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
-from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk, DataEnd, Header, McapRecord, Message, MessageIndex, Metadata, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+from mcap.stream_reader import breakup_chunk
 from mcap.writer import MCAP0_MAGIC, Writer
-from zstandard import ZstdError
 
 from .files import BagError, lock
 from .metadata import read_summary
+from .whole_records import UNREADABLE, damaged, whole_records
 
 
 def rewrite(path: Path, annotation: tuple[str, dict[str, str]] | None = None,
@@ -61,7 +59,10 @@ def rewrite(path: Path, annotation: tuple[str, dict[str, str]] | None = None,
         try:
             with unfinished.open('wb') as target:
                 writer = Writer(target)
-                messages, end = _copy(source, path, writer, annotation[0] if annotation else None, meanwhile)
+                try:
+                    messages, end = _copy(source, path, writer, annotation[0] if annotation else None, meanwhile)
+                except KeyError as error:  # a message of a channel that is not announced
+                    raise damaged(path, source.tell()) from error
                 if annotation:
                     writer.add_metadata(*annotation)
                 writer.finish()
@@ -86,7 +87,7 @@ def _copy(source: IO[bytes], path: Path, writer: Writer, without: str | None,
     channels: dict[int, int] = {}
     messages = end = 0
     spoilt = False
-    for record in _whole_records(source):
+    for record in whole_records(source, path):
         match record:
             case Header():
                 writer.start(record.profile, record.library)
@@ -96,11 +97,11 @@ def _copy(source: IO[bytes], path: Path, writer: Writer, without: str | None,
             case Chunk():
                 try:
                     content = breakup_chunk(record, validate_crc=True)
-                except (CRCValidationError, ZstdError):
+                except UNREADABLE:
                     spoilt = True
                     continue
                 if spoilt:
-                    raise BagError(f'{path} is damaged before its end; it is left as it is, move it away')
+                    raise damaged(path, end)
                 messages += _copy_messages(content, writer, schemas, channels)
                 writer.flush()  # chunks stay as they were
                 meanwhile()
@@ -108,7 +109,7 @@ def _copy(source: IO[bytes], path: Path, writer: Writer, without: str | None,
                 break
             case Schema() | Channel() | Message():  # a file without chunks, as `ros2 bag convert` can write it
                 if spoilt:
-                    raise BagError(f'{path} is damaged before its end; it is left as it is, move it away')
+                    raise damaged(path, end)
                 messages += _copy_messages([record], writer, schemas, channels)
             case MessageIndex():
                 pass
@@ -135,11 +136,3 @@ def _copy_messages(content: list[McapRecord], writer: Writer, schemas: dict[int,
             case Schema():
                 schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
     return messages
-
-
-def _whole_records(source: IO[bytes]) -> Iterator[McapRecord]:
-    """All records up to the end of the file or to one that is cut off."""
-    try:
-        yield from StreamReader(source, emit_chunks=True).records
-    except (McapError, struct.error, UnicodeDecodeError):  # which of them, depends on where it is cut
-        return
