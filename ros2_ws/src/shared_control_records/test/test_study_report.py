@@ -102,8 +102,21 @@ def test_survival_counts_who_was_given_up():
     assert curve.waiting == pytest.approx([1, 5 / 6, 1 / 2, 1 / 3, 1 / 3])
     assert curve.median.value == 5.0 and curve.median.low == 3.0 and np.isinf(curve.median.high)
     assert (curve.low <= curve.waiting).all() and (curve.waiting <= curve.high).all()
+    early = survival(Times(np.array([3.0, 5.0, 5.0, 8.0, 20.0, 2.0]), np.array([1, 1, 1, 1, 0, 0], bool)))
+    assert early.median.value == 5.0, 'who was given up early says nothing of later'
+    assert early.waiting[early.episodes == 5.0] == pytest.approx(2 / 5)
     never = survival(Times(np.array([20.0, 20.0]), np.array([False, False])))
     assert np.isinf(never.median.value)
+
+
+@pytest.mark.parametrize(('episodes', 'interval'), [
+    (6 * [2.0], None), (24 * [2.0], None), (12 * [2.0] + 12 * [3.0], (2.0, 3.0)), ([3.0, 4.0, 5.0, 6.0, 7.0], (3.0, 7.0))])
+def test_an_interval_has_an_end_where_everybody_got_there(episodes, interval):
+    curve = survival(Times(np.array(episodes), np.ones(len(episodes), bool)))
+    assert curve.median.value == np.quantile(episodes, 0.5, method='inverted_cdf')
+    assert np.isnan([curve.median.low, curve.median.high]).all() if interval is None else (
+        curve.median.low, curve.median.high) == interval
+    assert curve.waiting[-1] == 0.0 and np.isnan([curve.low[-1], curve.high[-1]]).all()
 
 
 def test_who_was_sooner_is_a_tie_where_nobody_knows():

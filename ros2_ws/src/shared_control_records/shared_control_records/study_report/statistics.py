@@ -30,6 +30,8 @@ from scipy import stats
 
 CONFIDENCE = 0.95
 RESAMPLES = 5000
+TINY = 1e-9
+"""By which a share that was computed may be beside one half."""
 ENOUGH = 5
 """Participants below which no interval is given: one that is drawn from one or two looks certain."""
 
@@ -136,18 +138,39 @@ def survival(times: Times) -> Survival:
     waiting = curve.probabilities
     low = np.minimum(_held(interval.low.probabilities), waiting)
     high = _held(interval.high.probabilities)
-
-    def when_half(shares: np.ndarray) -> float:
-        return float(curve.quantiles[shares <= 0.5].min(initial=np.inf))
-
+    low[waiting == 0.0] = high[waiting == 0.0] = np.nan  # the estimate of its variance is nothing there
     if len(times.episodes) < ENOUGH:
         low, high = np.full((2, len(waiting)), np.nan)
-        median = Estimate(when_half(waiting), np.nan, np.nan)
-    else:
-        median = Estimate(when_half(waiting), *_with_width(when_half(low), when_half(high)))
     return Survival(
         np.concatenate([[0.0], curve.quantiles]), np.concatenate([[1.0], waiting]), np.concatenate([[1.0], low]),
-        np.concatenate([[1.0], high]), median)
+        np.concatenate([[1.0], high]), _median(times))
+
+
+def _median(times: Times) -> Estimate:
+    """When half of them had reached it, with its percentile interval by resampling.
+
+    Not from where the band crosses one half: the band ends where all have reached it, so that of runs that took three
+    episodes each the interval would have no end.
+    """
+    values = np.stack([times.episodes, times.reached], axis=-1)
+    value = float(_medians(values[None])[0])
+    if len(values) < ENOUGH:
+        return Estimate(value, np.nan, np.nan)
+    drawn = np.random.default_rng(0).integers(len(values), size=(RESAMPLES, len(values)))
+    tail = (1 - CONFIDENCE) / 2
+    low, high = np.quantile(_medians(values[drawn]), [tail, 1 - tail], method='inverted_cdf')  # some may be infinite
+    return Estimate(value, *_with_width(float(low), float(high)))
+
+
+def _medians(samples: np.ndarray) -> np.ndarray:
+    """When, in each sample of times, (m, n, 2), the Kaplan-Meier estimate falls to one half, (m,); inf where never."""
+    episodes, reached = samples[..., 0], samples[..., 1] == 1.0
+    medians, waiting = np.full(len(samples), np.inf), np.ones(len(samples))
+    for when in np.unique(episodes[reached]):
+        ends, at_risk = (reached & (episodes == when)).sum(axis=-1), (episodes >= when).sum(axis=-1)
+        waiting *= 1.0 - ends / np.maximum(at_risk, 1)
+        medians = np.where((waiting <= 0.5 + TINY) & np.isinf(medians), when, medians)
+    return medians
 
 
 def _with_width(low: float, high: float) -> tuple[float, float]:
