@@ -16,6 +16,7 @@
 
 import argparse
 import os
+import shlex
 import sys
 import time
 from contextlib import nullcontext
@@ -186,7 +187,7 @@ def _conclude(folder: SessionFolder, end: End, restarts: int, settings: Settings
     finally:
         if end is not End.DONE:
             print('Stopped before the end.' if settings.blind else
-                  f'Stopped before the end. Go on with\n  shared-control session --resume {folder.path}', flush=True)
+                  f'Stopped before the end. Go on with\n  shared-control session --resume {shlex.quote(str(folder.path))}', flush=True)
     return end
 
 

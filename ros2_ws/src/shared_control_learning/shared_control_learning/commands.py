@@ -16,11 +16,14 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from shared_control.command_line import add_json_option, add_parser
 from shared_control.control.sharing import WAYS
 from shared_control.plugins import LEARNERS, TASKS, WORLDS, names
 from shared_control.teaching.tutors import HANDS, TUTOR_NAMES
+
+from .train_options import TrainOptions
 
 
 def add_train(commands: argparse._SubParsersAction) -> None:
@@ -33,27 +36,29 @@ def add_train(commands: argparse._SubParsersAction) -> None:
         examples=['shared-control train --profile low --until-skilled',
                   'shared-control train --preset autonomous --episodes 30 --output out/alone',
                   'shared-control train --resume out/train --episodes 40'])
-    parser.add_argument('--preset', choices=names(LEARNERS), default='',
-                        help="how it is learned (default: the task's; guided for balance and plate)")
-    parser.add_argument('--task', choices=names(TASKS), default='',
-                        help="what is learned (default: the preset's task, or balance)")
-    parser.add_argument('--physics', choices=names(WORLDS), default='bullet', help='what the arm moves in')
-    parser.add_argument('--profile', choices=(*TUTOR_NAMES, 'none'), metavar='NAME',
-                        help='who the simulated tutor is, a profile or a family of which the seed draws one: '
-                        f'{", ".join(TUTOR_NAMES)}; or none (default: expert; none for a preset that nobody teaches, '
-                        'and for a task that tutors do not know)')
-    parser.add_argument('--sharing', choices=WAYS, default='additive', help='what counts of the two moments')
-    parser.add_argument('--human-only', action='store_true', help="do not apply the agent's moment")
-    parser.add_argument('--seed', type=int, default=0, metavar='N', help='seed of everything random')
-    parser.add_argument('--episodes', type=int, default=20, metavar='N', help='teach this many at the most')
-    parser.add_argument('--until-skilled', action='store_true', help='stop when two tests in a row were passed')
-    parser.add_argument('--evaluate-every', type=int, default=1, metavar='N',
-                        help='test after every Nth episode; 0: never')
+    default = TrainOptions()
+
+    def add(name: str, text: str, **options: Any) -> None:  # those that are not given are not in the namespace
+        parser.add_argument(name, default=argparse.SUPPRESS, help=text, **options)
+
+    add('--preset', "how it is learned (default: the task's; guided for balance and plate)", choices=names(LEARNERS))
+    add('--task', "what is learned (default: the preset's task, or balance)", choices=names(TASKS))
+    add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
+    add('--profile', 'who the simulated tutor is, a profile or a family of which the seed draws one: '
+        f'{", ".join(TUTOR_NAMES)}; or none (default: expert; none for a preset that nobody teaches, and for a task that '
+        'tutors do not know)', choices=(*TUTOR_NAMES, 'none'), metavar='NAME')
+    add('--sharing', f'what counts of the two moments (default: {default.sharing})', choices=WAYS)
+    add('--human-only', "do not apply the agent's moment", action='store_true')
+    add('--seed', f'seed of everything random (default: {default.seed})', type=int, metavar='N')
+    add('--episodes', f'teach this many at the most (default: {default.episodes})', type=int, metavar='N')
+    add('--until-skilled', 'stop when two tests in a row were passed', action='store_true')
+    add('--evaluate-every', f'test after every Nth episode; 0: never (default: {default.evaluate_every})', type=int,
+        metavar='N')
     parser.add_argument('--output', type=Path, default=Path('out/train'), metavar='FOLDER', help='folder of the run')
     choice = parser.add_mutually_exclusive_group()
     choice.add_argument('--resume', type=Path, metavar='FOLDER',
-                        help='go on with the run in this folder; give the options that it began with (default: '
-                        'begin a new run)')
+                        help='go on with the run in this folder, with the options that it began with but for those '
+                        'that are given (default: begin a new run)')
     choice.add_argument('--overwrite', action='store_true',
                         help='remove what an earlier run wrote in the folder, and nothing else')
     add_json_option(parser, 'the result')

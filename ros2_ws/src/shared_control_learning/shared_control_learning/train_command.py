@@ -16,6 +16,7 @@
 
 import argparse
 import os
+import shlex
 import sys
 from dataclasses import asdict
 from importlib.util import find_spec
@@ -33,58 +34,61 @@ from .episode import Episode
 from .episode_table import TABLE_NAME
 from .policy_file import POLICY_NAME
 from .presets import Preset, preset_for
+from .train_options import OPTIONS_NAME, TrainOptions, keep_options, options_of
 from .training import RUN_NAME, TENSORBOARD_NAME, TrainingError, TrainingRun, new_learner, read_run, train
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the command; 0, or 1 when the policy was tested and is not skilled yet."""
-    chosen = preset_for(args.task, args.preset)
+    options = options_of(args)
+    chosen = preset_for(options.task, options.preset)
     args.output = args.resume or args.output
-    _check_options(args, chosen)
+    _check_options(options, chosen)
     folder = _claim_folder(args)
     try:
-        return _train(args, chosen)
+        return _train(args, options, chosen)
     finally:
         folder.release()
 
 
-def _train(args: argparse.Namespace, chosen: Preset) -> int:
+def _train(args: argparse.Namespace, options: TrainOptions, chosen: Preset) -> int:
     """Train, and print what came of it; the exit code."""
-    tutor = _tutor(args, chosen)
+    tutor = _tutor(options, chosen)
     done = read_run(args.output).episodes if args.resume else 0
     try:
-        with tqdm(total=args.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
+        with tqdm(total=options.episodes, initial=done, unit='episode', disable=None, file=sys.stderr) as bar:
             result = train(
-                chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.episodes,
-                until_skilled=args.until_skilled, human_only=args.human_only, physics=args.physics, folder=args.output,
-                tensorboard=find_spec('tensorboard') is not None, evaluate_every=args.evaluate_every,
-                sharing=Sharing(args.sharing), callbacks=_Bar(bar, args.output), processes=len(os.sched_getaffinity(0)))
+                chosen, None if tutor == 'none' else tutor_named(tutor, options.seed), options.seed, options.episodes,
+                until_skilled=options.until_skilled, human_only=options.human_only, physics=options.physics,
+                folder=args.output, tensorboard=find_spec('tensorboard') is not None,
+                evaluate_every=options.evaluate_every, sharing=Sharing(options.sharing),
+                callbacks=_Watch(bar, args.output, options), processes=len(os.sched_getaffinity(0)))
     except KeyboardInterrupt:
-        print(f'stopped; go on with: shared-control train --resume {args.output}', file=sys.stderr)
+        print(f'stopped; go on with: shared-control train --resume {shlex.quote(str(args.output))}', file=sys.stderr)
         return 130
     _tell(result, tutor, args)
     return 0 if result.skilled is not None or not result.tests else 1
 
 
-def _tutor(args: argparse.Namespace, chosen: Preset) -> str:
+def _tutor(options: TrainOptions, chosen: Preset) -> str:
     """The name of who teaches, ``none`` for nobody."""
-    return args.profile or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
+    return options.profile or ('expert' if chosen.taught and can_teach(chosen.task) else 'none')
 
 
-def _check_options(args: argparse.Namespace, chosen: Preset) -> None:
+def _check_options(options: TrainOptions, chosen: Preset) -> None:
     """Refuse numbers and combinations that cannot be, before anything is overwritten."""
-    if args.episodes < 1 or args.evaluate_every < 0 or not 0 <= args.seed < 2**31:
+    if options.episodes < 1 or options.evaluate_every < 0 or not 0 <= options.seed < 2**31:
         raise ValueError('--episodes must be at least 1, --evaluate-every and --seed at least 0')
-    if not chosen.taught and args.profile not in (None, 'none'):
+    if not chosen.taught and options.profile not in ('', 'none'):
         raise ValueError(f'the preset {chosen.name} has no tutor: leave --profile out, or choose another preset')
-    tutor = _tutor(args, chosen)
-    new_learner(chosen, None if tutor == 'none' else tutor_named(tutor, args.seed), args.seed, args.physics,
-                Sharing(args.sharing))
+    tutor = _tutor(options, chosen)
+    new_learner(chosen, None if tutor == 'none' else tutor_named(tutor, options.seed), options.seed, options.physics,
+                Sharing(options.sharing))
 
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:
     """The folder as the options say, for this process alone."""
-    folder = RunFolder(args.output, 'run', own=(POLICY_NAME, TABLE_NAME, f'{TENSORBOARD_NAME}/events.out.tfevents.*'),
+    folder = RunFolder(args.output, 'run', own=(POLICY_NAME, TABLE_NAME, OPTIONS_NAME, f'{TENSORBOARD_NAME}/events.out.tfevents.*'),
                        mark=RUN_NAME, keys=('preset', 'tutor', 'seed'))
     if args.resume:
         if not (args.output / RUN_NAME).exists():
@@ -93,16 +97,24 @@ def _claim_folder(args: argparse.Namespace) -> RunFolder:
         folder.claim()
     else:
         if folder.holds_run and not args.overwrite:
-            raise TrainingError(f'{args.output} holds a run: --resume {args.output}, --overwrite, or another --output')
+            raise TrainingError(f'{args.output} holds a run: --resume {shlex.quote(str(args.output))}, --overwrite, or '
+                                'another --output')
         folder.begin(args.overwrite)
     return folder
 
 
-class _Bar(Callbacks):
-    """Moves the progress bar on."""
+class _Watch(Callbacks):
+    """Moves the progress bar on, and keeps the options: from the first episode on, when they have been found to fit."""
 
-    def __init__(self, bar: tqdm, folder: Path):
+    def __init__(self, bar: tqdm, folder: Path, options: TrainOptions):
         self._bar, self._folder = bar, folder
+        self._options: TrainOptions | None = options
+
+    def episode_started(self, episode: Episode) -> None:
+        """See :class:`Callbacks`."""
+        if self._options is not None:
+            keep_options(self._options, self._folder)
+            self._options = None
 
     def episode_learned(self, episode: Episode, figures: dict[str, float]) -> None:
         """See :class:`Callbacks`."""
@@ -120,5 +132,5 @@ def _tell(result: TrainingRun, tutor: str, args: argparse.Namespace) -> None:
     found = 'was not tested' if not result.tests else (
         f'skilled after {result.skilled} episodes' if result.skilled is not None else
         f'not skilled after {result.episodes} episodes')
-    print(f'{result.preset}, {"nobody" if tutor == "none" else f"simulated {tutor}"} at the keys, seed {args.seed}: '
+    print(f'{result.preset}, {"nobody" if tutor == "none" else f"simulated {tutor}"} at the keys, seed {result.seed}: '
           f'{found}; {result.seconds:.0f} s. {args.output}', file=prose(args.json))

@@ -15,6 +15,7 @@
 """Teaching in process: what is kept, and that a run goes on as if it had never stopped."""
 
 import json
+import shlex
 from dataclasses import replace
 
 import pytest
@@ -90,7 +91,12 @@ def test_a_run_keeps_its_physics_and_goes_on_in_it(tmp_path, monkeypatch, capsys
     new = ('--task', 'balance', '--episodes', 1, '--evaluate-every', 0, '--output', tmp_path, '--physics', 'mujoco')
     assert command(monkeypatch, *new) == 0
     assert read_run(tmp_path).physics == 'mujoco'
-    assert command(monkeypatch, *new[:-4], '--resume', tmp_path) == 2
+    kept = (tmp_path / 'options.json').read_text()
+    assert command(monkeypatch, '--resume', tmp_path, '--physics', 'bullet') == 2
+    assert "physics 'mujoco', asked for 'bullet'" in capsys.readouterr().err
+    assert (tmp_path / 'options.json').read_text() == kept
+    (tmp_path / 'options.json').unlink()  # as an older version left it
+    assert command(monkeypatch, '--resume', tmp_path) == 2
     assert "physics 'mujoco', asked for 'bullet'" in capsys.readouterr().err
 
 
@@ -133,13 +139,31 @@ def command(monkeypatch, *arguments):
 
 
 def test_command_trains_goes_on_and_tells(tmp_path, monkeypatch, capsys):
-    folder, result = tmp_path / 'run', tmp_path / 'result.json'
-    assert command(monkeypatch, '--episodes', 1, '--evaluate-every', 0, '--output', folder, '--json', result) == 0
-    assert json.loads(result.read_text())['tutor'] == 'expert'
+    folder, result = tmp_path / 'my run', tmp_path / 'result.json'
+    begun = ('--episodes', 2, '--evaluate-every', 0, '--profile', 'low', '--preset', 'coached', '--seed', 3)
+
+    def stop_after_one(*arguments, callbacks, **options):
+        def should_stop():
+            if folder.joinpath('policy.safetensors').exists():
+                raise KeyboardInterrupt
+            return False
+        callbacks.should_stop = should_stop
+        return train(*arguments, callbacks=callbacks, **options)
+    with monkeypatch.context() as patch:
+        patch.setattr('shared_control_learning.train_command.train', stop_after_one)
+        assert command(patch, *begun, '--output', folder) == 130
+    [said] = [line for line in capsys.readouterr().err.splitlines() if line.startswith('stopped; go on with: ')]
+    assert read_run(folder).episodes == 1
+    assert command(monkeypatch, *shlex.split(said.partition(': ')[2])[2:], '--json', result) == 0
+    told = json.loads(result.read_text())
+    assert [told[name] for name in ('episodes', 'tests', 'tutor', 'preset', 'seed')] == [2, [], 'low', 'coached', 3]
     assert command(monkeypatch, '--output', folder) == 2
-    assert f'--resume {folder}, --overwrite, or another --output' in capsys.readouterr().err
-    assert command(monkeypatch, '--episodes', 2, '--evaluate-every', 0, '--resume', folder) == 0
-    assert read_run(folder).episodes == 2
+    assert f'--resume {shlex.quote(str(folder))}, --overwrite, or another --output' in capsys.readouterr().err
+    assert command(monkeypatch, '--episodes', 3, '--resume', folder) == 0
+    assert read_run(folder).episodes == 3 and json.loads((folder / 'options.json').read_text())['episodes'] == 3
+    (folder / 'options.json').write_text('{"seed": "x"}')
+    assert command(monkeypatch, '--resume', folder) == 2
+    assert 'options.json holds no options of a run: seed: ' in capsys.readouterr().err
 
 
 def test_overwriting_removes_what_a_run_writes_and_nothing_else(tmp_path, monkeypatch, capsys):

@@ -14,6 +14,7 @@
 
 """Reading a session's bag into arrays."""
 
+import shlex
 from collections import Counter
 from collections.abc import Callable, Iterable
 from contextlib import suppress
@@ -135,7 +136,7 @@ def _check_finished(path: Path) -> None:
         what = f'its metadata.yaml does not name {", ".join(unlisted)}'
     if what:
         raise BagReadError(f'the recording of the bag {path} was not finished: {what}; '
-                           f'`shared-control recover {folder}` finishes it')
+                           f'`shared-control recover {shlex.quote(str(folder))}` finishes it')
 
 
 def recorded_namespace(bag: Path, topics: Iterable[str]) -> str:

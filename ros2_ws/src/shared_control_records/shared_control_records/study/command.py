@@ -16,6 +16,7 @@
 
 import argparse
 import os
+import shlex
 import sys
 from pathlib import Path
 
@@ -102,7 +103,7 @@ def _run(args: argparse.Namespace) -> int:
             print(f'Participant {participant.number} has withdrawn; what was recorded is {did}.')
             if args.withdraw == 'delete':
                 print(f'The report, if there was one, is gone with it, and can be written anew:\n'
-                      f'  shared-control report {folder.path}\n'
+                      f'  shared-control report {shlex.quote(str(folder.path))}\n'
                       'Copies, exports and reports in other places are yours to clean.')
             return 0
         return 0 if lead_through(folder, plan, participant, asker_of(plan.people)) else INTERRUPTED
@@ -123,7 +124,7 @@ def _run(args: argparse.Namespace) -> int:
             print('The quick form tests once, so nobody can be skilled, which takes two tests in a row.', file=prints)
         write_json({'tutors': 'simulated', 'seed': plan.seed, 'cells': rows,
                     'left_out': list(map(folder.without_path, study.problems))}, args.json)
-    print(f'The report:\n  shared-control report {folder.path}', file=prints)
+    print(f'The report:\n  shared-control report {shlex.quote(str(folder.path))}', file=prints)
     if study.problems:
         problems = ''.join(f'\n  {problem}' for problem in study.problems)
         raise ValueError(f'{len(study.problems)} of {len(plan.jobs)} runs cannot be read, and no figure counts them:'

@@ -14,6 +14,7 @@
 
 """One run of a study: train, test, keep the result."""
 
+import shlex
 import time
 from dataclasses import replace
 from itertools import zip_longest
@@ -142,7 +143,7 @@ def taught_by_a_person(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     test = load_test(session.test) if episodes else None
     if episodes and test is None:
         raise FileNotFoundError(
-            f'{session.test} is missing: shared-control session --resume {session.path} tests again')
+            f'{session.test} is missing: shared-control session --resume {shlex.quote(str(session.path))} tests again')
     passed = test is not None and test.successes >= len(test.episodes) * SUCCESSES_NEEDED / TEST_EPISODES
     return RunResult(
         **describe(job, simulated=False), first_pass=None, skilled=len(episodes) if passed else None,
