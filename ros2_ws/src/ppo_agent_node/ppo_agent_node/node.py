@@ -358,7 +358,8 @@ class PpoAgentNode(Callbacks):
             if self._learner.episode:
                 save_policy(self._learner, self._policy_path)
             else:
-                self._policy_path.unlink(missing_ok=True)  # as before the first episode: a learner that has learned nothing is none
+                # As before the first episode: a learner that has learned nothing is none.
+                self._policy_path.unlink(missing_ok=True)
         self.node.get_logger().info(f'episode {episode.number} is discarded: it is unlearned, and taught again')
 
     def episode_tested(self, episode: Episode) -> None:

@@ -143,8 +143,8 @@ def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again
     say = observer.publisher(contract.HUMAN_VERDICT)
 
     def rows():
-        """Of ended episodes: a busy machine may void one."""
-        return [(row['episode'], row['verdict']) for row in read_rows(output / 'episodes.csv') if row['phase'] == 'teach']
+        taught = [row for row in read_rows(output / 'episodes.csv') if row['phase'] == 'teach']  # one may be void
+        return [(row['episode'], row['verdict']) for row in taught]
     parameters = {'episodes': 1, 'episode_seconds': 2.0, 'output': output, 'break_seconds': 5.0}
     agent = start_node('ppo_agent_node', **parameters)
     observer.spin(lambda: verdicts() == [('teach 1', '')], EPISODE_TIMEOUT, 'the first episode ends')

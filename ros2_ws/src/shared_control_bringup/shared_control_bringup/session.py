@@ -187,7 +187,8 @@ def _conclude(folder: SessionFolder, end: End, restarts: int, settings: Settings
     finally:
         if end is not End.DONE:
             print('Stopped before the end.' if settings.blind else
-                  f'Stopped before the end. Go on with\n  shared-control session --resume {shlex.quote(str(folder.path))}', flush=True)
+                  'Stopped before the end. Go on with\n'
+                  f'  shared-control session --resume {shlex.quote(str(folder.path))}', flush=True)
     return end
 
 

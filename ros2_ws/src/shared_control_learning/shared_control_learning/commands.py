@@ -45,8 +45,8 @@ def add_train(commands: argparse._SubParsersAction) -> None:
     add('--task', "what is learned (default: the preset's task, or balance)", choices=names(TASKS))
     add('--physics', f'what the arm moves in (default: {default.physics})', choices=names(WORLDS))
     add('--profile', 'who the simulated tutor is, a profile or a family of which the seed draws one: '
-        f'{", ".join(TUTOR_NAMES)}; or none (default: expert; none for a preset that nobody teaches, and for a task that '
-        'tutors do not know)', choices=(*TUTOR_NAMES, 'none'), metavar='NAME')
+        f'{", ".join(TUTOR_NAMES)}; or none (default: expert; none for a preset that nobody teaches, and for a '
+        'task that tutors do not know)', choices=(*TUTOR_NAMES, 'none'), metavar='NAME')
     add('--sharing', f'what counts of the two moments (default: {default.sharing})', choices=WAYS)
     add('--human-only', "do not apply the agent's moment", action='store_true')
     add('--seed', f'seed of everything random (default: {default.seed})', type=int, metavar='N')

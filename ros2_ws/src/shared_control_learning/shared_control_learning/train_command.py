@@ -88,8 +88,8 @@ def _check_options(options: TrainOptions, chosen: Preset) -> None:
 
 def _claim_folder(args: argparse.Namespace) -> RunFolder:
     """The folder as the options say, for this process alone."""
-    folder = RunFolder(args.output, 'run', own=(POLICY_NAME, TABLE_NAME, OPTIONS_NAME, f'{TENSORBOARD_NAME}/events.out.tfevents.*'),
-                       mark=RUN_NAME, keys=('preset', 'tutor', 'seed'))
+    own = (POLICY_NAME, TABLE_NAME, OPTIONS_NAME, f'{TENSORBOARD_NAME}/events.out.tfevents.*')
+    folder = RunFolder(args.output, 'run', own=own, mark=RUN_NAME, keys=('preset', 'tutor', 'seed'))
     if args.resume:
         if not (args.output / RUN_NAME).exists():
             raise TrainingError(f'--resume: there is no run in {args.output}: leave --resume out to begin one')

@@ -110,7 +110,8 @@ def test_survival_counts_who_was_given_up():
 
 
 @pytest.mark.parametrize(('episodes', 'interval'), [
-    (6 * [2.0], None), (24 * [2.0], None), (12 * [2.0] + 12 * [3.0], (2.0, 3.0)), ([3.0, 4.0, 5.0, 6.0, 7.0], (3.0, 7.0))])
+    (6 * [2.0], None), (24 * [2.0], None), (12 * [2.0] + 12 * [3.0], (2.0, 3.0)),
+    ([3.0, 4.0, 5.0, 6.0, 7.0], (3.0, 7.0))])
 def test_an_interval_has_an_end_where_everybody_got_there(episodes, interval):
     curve = survival(Times(np.array(episodes), np.ones(len(episodes), bool)))
     assert curve.median.value == np.quantile(episodes, 0.5, method='inverted_cdf')
@@ -126,6 +127,42 @@ def test_who_was_sooner_is_a_tie_where_nobody_knows():
     assert sooner(second, first).tolist() == [0.0, 1.0, 0.5, 0.5, 0.5]
     assert beats(np.array([1.0, 2.0, 2.0]), np.array([2.0, 1.0, 2.0]), lower_is_better=True).tolist() == [1, 0, 0.5]
     assert improvement(np.array([1.0, 1.0]), np.zeros(2)).value == 1.0
+
+
+@pytest.mark.parametrize(('alone', 'task', 'saved'), [
+    ('autonomous', 'balance', True), ('coached', 'balance', True), ('lqr', 'balance', False),
+    ('autonomous', 'plate', False)])
+def test_what_teaching_saves_is_told_against_the_same_task_learned_alone(tmp_path, alone, task, saved):
+    (tmp_path / 'plan.yaml').write_text(
+        'seed: 1\nparticipants: {simulated: {expert: 6}}\ntests: [randomized]\nconditions:\n'
+        '  taught: {preset: coached, episodes: 20}\n'
+        f'  alone: {{preset: {alone}, task: {task}, taught: false, episodes: 40}}\n')
+    study = load_study(made_study(tmp_path / 'study', tmp_path / 'plan.yaml'))
+    assert [name for name, _ in report._reduction(study)] == ['taught'] * saved
+    assert len(comparison_table(study, run_table(study))) == 0 or task == 'balance'
+
+
+@pytest.mark.parametrize(('change', 'said'), [
+    ({'participant': 2}, 'is of another run: participant is 2, not 1'), ({'seed': 99}, 'seed is 99'),
+    ({'skilled': 99}, r'damaged \(skilled after 99 of'),
+    ({'episodes': [{'episode': 1.0}], 'skilled': None}, 'no number seconds')])
+def test_a_result_of_another_run_is_left_out_and_said(plan, tmp_path, change, said):
+    made = made_study(tmp_path / 'study', plan)
+    first = load_study(made)
+    path = made.run(first.plan.jobs[0]) / 'result.json'
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
+    study = load_study(made)
+    assert len(study.runs) == len(first.runs) - 1
+    [problem] = study.problems
+    assert str(path.parent) in problem and re.search(said, problem)
+
+
+def test_a_report_replaces_no_other_files(folder, tmp_path):
+    (tmp_path / 'report.html').write_text('of a session')
+    (tmp_path / 'settings.json').write_text('{}')
+    with pytest.raises(OSError, match=r'holds settings\.json, which is of no'):
+        write_study_report(folder, tmp_path)
+    assert (tmp_path / 'report.html').read_text() == 'of a session'
 
 
 def test_tables_count_every_run(folder):

@@ -24,7 +24,7 @@ from shared_control_records.study.folder import StudyFolder
 from shared_control_records.study.plan import Job
 from shared_control_records.study.result import RunResult, describe, save_result
 
-GOOD = {'coached': 0.95, 'thesis': 0.2, 'autonomous': 0.75}
+GOOD = {'coached': 0.95, 'thesis': 0.2, 'autonomous': 0.75, 'lqr': 0.95}
 """How well the policies of a condition do, 0..1."""
 
 
@@ -49,7 +49,8 @@ def made_result(job: Job, random: np.random.Generator, tested: tuple[str, ...] =
     if 'transfer' in tested:
         tests += [_test(f'{TRANSFER}{name}', random, good, 20, 10.0) for name in ('as taught', 'ball of 0.6 kg')]
     return RunResult(
-        **describe(job, simulated=True), first_pass=episodes - 1 if good else None, skilled=episodes if good else None,
+        **describe(job, simulated=job.participant.tutor is not None),
+        first_pass=episodes - 1 if good else None, skilled=episodes if good else None,
         seconds=10.0 * episodes, tests={test.test: test for test in tests},
         episodes=[_episode(number, job, random) for number in range(1, episodes + 1)])
 

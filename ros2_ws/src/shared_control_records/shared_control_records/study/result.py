@@ -30,6 +30,8 @@ from .plan import Job
 
 RESULT = 'result.json'
 TESTS = 'tests.npz'
+NUMBERS = ('episode', 'seconds', 'return', 'fallen', 'mean_abs_human', 'mean_abs_agent', 'intervention_rate')
+"""What a report needs of every episode of a run."""
 
 
 class ResultError(ValueError):
@@ -138,3 +140,20 @@ def describe(job: Job, simulated: bool) -> dict[str, Any]:
     return {'participant': job.participant.number, 'group': job.participant.group, 'simulated': simulated,
             'condition': job.condition.name, 'taught': job.condition.taught, 'seed': job.participant.seed,
             'cap': job.condition.episodes}
+
+
+def check_result(result: RunResult, job: Job, simulated: bool, folder: Path) -> None:
+    """Refuse what another run has left in a run's folder, and a table of episodes of which no report can be made.
+
+    Raises:
+        ResultError: the message names the file and what is wrong.
+    """
+    for key, value in describe(job, simulated).items():
+        if (found := getattr(result, key)) != value:
+            raise ResultError(f'{folder / RESULT} is of another run: {key} is {found!r}, not {value!r}; move it and '
+                              f'{TESTS} away, and the run is done again')
+    if result.skilled is not None and result.skilled > len(result.episodes):
+        raise _damaged(folder, ValueError(f'skilled after {result.skilled} of {len(result.episodes)} episodes'))
+    for row in result.episodes:
+        if missing := [name for name in NUMBERS if not isinstance(row.get(name), int | float)]:
+            raise _damaged(folder, ValueError(f'an episode has no number {missing[0]}'))

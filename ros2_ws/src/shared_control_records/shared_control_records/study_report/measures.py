@@ -28,7 +28,7 @@ from shared_control_sim.changes import AS_TAUGHT
 
 from ..study.folder import StudyFolder
 from ..study.plan import Condition, Plan, load_plan
-from ..study.result import ResultError, RunResult, load_result
+from ..study.result import ResultError, RunResult, check_result, load_result
 from .participants import excluded_participants
 from .statistics import Times
 
@@ -101,6 +101,8 @@ def load_study(folder: StudyFolder) -> Study:
             continue
         try:
             run = load_result(folder.run(job))
+            if run is not None:
+                check_result(run, job, plan.people is None, folder.run(job))
         except ResultError as error:
             problems.append(str(error))
             continue

@@ -24,12 +24,14 @@ import matplotlib
 import pandas as pd
 from markupsafe import Markup
 from shared_control.files import write_atomically
+from shared_control_learning.presets import preset_for
 
 from ..plotting.plot import origin
 from ..plotting.style import PAPER
 from ..session.report import STYLE_SHEET
 from ..study.folder import StudyFolder
-from .cells import cell_rows
+from ..study.plan import Condition
+from .cells import AGAINST, cell_rows
 from .figures import draw_all
 from .measures import Study, load_study, lost_error, run_table, times
 from .participants import participants_table, turnout
@@ -37,6 +39,7 @@ from .statistics import survival
 from .tables import comparison_table, conditions_table, group_table, runs_in_words, transfer_table
 
 _PAGE = Path(__file__).with_name('study.html')
+_OWN = {'report.html', 'figures', 'data'}
 THESIS_REDUCTION = 0.976
 """How many episodes fewer with a human (4.7): 17 against 788."""
 
@@ -46,9 +49,10 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
 
     Raises:
         ValueError: no run of the study is done yet, or its plan is damaged.
-        OSError: ``output`` cannot be written.
+        OSError: ``output`` cannot be written, or holds something else.
     """
     study = load_study(folder)
+    _refuse_foreign(output)
     figures, data = output / 'figures', output / 'data'
     for path in (figures, data):
         path.mkdir(parents=True, exist_ok=True)
@@ -75,6 +79,12 @@ def write_study_report(folder: StudyFolder, output: Path) -> Path:
     page = output / 'report.html'
     write_atomically(page, _page(folder, study, tables, drawn, footer).encode())
     return page
+
+
+def _refuse_foreign(output: Path) -> None:
+    if output.is_dir() and (others := sorted({path.name for path in output.iterdir()} - _OWN)):
+        raise FileExistsError(f'{output} holds {", ".join(others[:3])}{", ..." if len(others) > 3 else ""}, which is '
+                              "of no study's report: name another folder")
 
 
 def _write_table(path: Path, table: pd.DataFrame) -> None:
@@ -121,15 +131,24 @@ def _headlines(study: Study) -> list[tuple[str, str]]:
 
 
 def _reduction(study: Study) -> list[tuple[str, float]]:
-    """Conditions with a teacher, and the share of episodes that they save against learning alone, by medians."""
-    alone = [c.name for c in study.plan.conditions if not c.taught and study.of(c.name)]
-    if not alone:
-        return []
-    without = survival(times(study.of(alone[0]))).median.value
-    medians = {c.name: survival(times(study.of(c.name))).median.value
-               for c in study.plan.conditions if c.taught and study.of(c.name)}
-    return [(name, 1 - median / without) for name, median in medians.items()
-            if math.isfinite(median) and math.isfinite(without)]
+    """Conditions with a teacher, and the share of episodes that they save against learning alone, by medians.
+
+    Alone the same learner, or PPO, has learned the same task.
+    """
+    medians = {c.name: survival(times(study.of(c.name))).median.value for c in study.plan.conditions
+               if study.of(c.name)}
+    found = []
+    for taught in (c for c in study.plan.conditions if c.taught and c.name in medians):
+        alone = [c.name for preset in (_preset(taught), AGAINST) for c in study.plan.conditions
+                 if not c.taught and c.name in medians and _preset(c) == preset
+                 and study.task(c.name).name == study.task(taught.name).name]
+        if alone and math.isfinite(medians[taught.name]) and math.isfinite(medians[alone[0]]):
+            found.append((taught.name, 1 - medians[taught.name] / medians[alone[0]]))
+    return found
+
+
+def _preset(condition: Condition) -> str:
+    return preset_for(condition.task, condition.preset).name
 
 
 def _interval(row: dict[str, Any], form: str) -> str:

@@ -73,10 +73,13 @@ def conditions_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
 def comparison_table(study: Study, runs: pd.DataFrame) -> pd.DataFrame:
     """A row for every two conditions and measure: the probability that the first is better.
 
-    Than the second, for the same participant: runs are paired by participant and so by seed.
+    Than the second, for the same participant: runs are paired by participant and so by seed. Conditions of different
+    tasks are not compared.
     """
     rows = []
     for first, second in combinations(study.conditions, 2):
+        if study.task(first).name != study.task(second).name:
+            continue
         one, other = ({run.participant: run for run in study.of(name)} for name in (first, second))
         both = sorted(one.keys() & other.keys())
         if not both:
