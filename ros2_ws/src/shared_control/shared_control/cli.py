@@ -23,6 +23,7 @@ import argparse
 import os
 import signal
 import sys
+from contextlib import suppress
 from importlib.metadata import EntryPoint, entry_points
 
 from .command_line import add_parser, make_parser
@@ -42,8 +43,13 @@ def main() -> int:
         if signal.getsignal(number) is signal.SIG_DFL:  # not so under nohup
             signal.signal(number, signal.default_int_handler)
     os.environ.pop('MPLBACKEND', None)  # a notebook's is none that this process has; all pictures are drawn without one
-    with lossy_output():
-        return _run()
+    try:
+        with lossy_output():
+            return _run()
+    except OSError as error:
+        with suppress(OSError):
+            print(f'shared-control: {error}', file=sys.stderr, flush=True)
+        return 2
 
 
 def _run() -> int:

@@ -34,8 +34,22 @@ def state_folder() -> Path:
 def write_atomically(path: Path, content: bytes, synced: bool = True) -> None:
     """Write ``content`` to ``path`` as a whole or not at all, whenever the process or the machine stops.
 
-    ``synced=False`` does not wait for the disk, and so holds for the process alone.
+    A device or a pipe is written to. ``synced=False`` does not wait for the disk, and so holds for the process alone.
+
+    Raises:
+        OSError: it cannot be written; the error has ``path``.
     """
+    if path.exists() and not path.is_file() and not path.is_dir():
+        path.write_bytes(content)
+        return
+    try:
+        _replace(path, content, synced)
+    except OSError as error:
+        error.filename, error.filename2 = str(path), None  # a full disk names none
+        raise
+
+
+def _replace(path: Path, content: bytes, synced: bool) -> None:
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f'.{path.name}.')
     temporary = Path(name)
     try:

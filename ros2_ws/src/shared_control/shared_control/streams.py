@@ -14,6 +14,7 @@
 
 """Standard streams that are closed (``>&-``), whose reader is gone (``| head``), or that say what nobody asked for."""
 
+import errno
 import os
 import sys
 from collections.abc import Iterator
@@ -33,11 +34,17 @@ def open_closed_streams() -> None:
             setattr(sys, name, os.fdopen(number, mode, encoding='utf-8', closefd=False))
 
 
+_NO_READER = (errno.EPIPE, errno.EIO)
+"""Of a pipe, and of a terminal."""
+
+
 class _Lossy:
     """A text stream that goes on as if nothing had happened when its reader is gone."""
 
     def __init__(self, stream: TextIO):
         self._stream = stream
+        self.lost: OSError | None = None
+        """Why something is missing that somebody waits for: a full disk."""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
@@ -55,7 +62,9 @@ class _Lossy:
     def _without_reader(self) -> Iterator[None]:
         try:
             yield
-        except OSError:  # EPIPE of a pipe, EIO of a terminal
+        except OSError as error:
+            if error.errno not in _NO_READER and self.lost is None:
+                self.lost = error
             # What is still in the buffer, and what child processes write, goes the same way.
             with suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -65,15 +74,23 @@ class _Lossy:
 
 @contextmanager
 def lossy_output() -> Iterator[None]:
-    """Let stdout and stderr lose what nobody reads, so that no work is lost with it."""
+    """Let stdout and stderr lose what nobody reads, so that no work is lost with it.
+
+    Raises:
+        OSError: in the end, when something is missing that somebody would read: the disk was full.
+    """
     streams = sys.stdout, sys.stderr
-    sys.stdout, sys.stderr = (_Lossy(stream) for stream in streams)  # type: ignore[assignment]
+    lossy = [_Lossy(stream) for stream in streams]
+    sys.stdout, sys.stderr = lossy  # type: ignore[assignment]
     try:
         yield
     finally:
-        for stream in (sys.stdout, sys.stderr):
+        for stream in lossy:
             stream.flush()
         sys.stdout, sys.stderr = streams
+    for stream, name in zip(lossy, ('output', 'error'), strict=True):
+        if stream.lost is not None:
+            raise OSError(f'standard {name} is not complete: {stream.lost.strerror}') from stream.lost
 
 
 @contextmanager

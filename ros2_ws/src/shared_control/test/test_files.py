@@ -18,6 +18,7 @@ import argparse
 import errno
 import fcntl
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -100,6 +101,40 @@ def test_a_lost_reader_costs_no_work(tmp_path, lost):
     command.stdin.close()
     assert command.wait(60) == 0
     assert (tmp_path / 'done').read_text() == 'the work is done'
+
+
+FULL = """
+from shared_control import cli
+cli._run = lambda: print('figures') or 0
+raise SystemExit(cli.main())
+"""
+
+
+@pytest.mark.parametrize(('streams', 'said'), [
+    ('> /dev/full', 'shared-control: standard output is not complete: No space left on device\n'), ('2> /dev/full', ''),
+    ('> /dev/full 2>&1', '')])
+def test_output_to_a_full_disk_is_an_error(streams, said):
+    done = subprocess.run(['sh', '-c', f'exec "$0" -c "$1" {streams}', sys.executable, FULL], capture_output=True,
+                          text=True, check=False)
+    assert (done.returncode, done.stderr) == (2 if streams.startswith('>') else 0, said)
+
+
+def test_a_file_that_cannot_be_written_is_named_and_a_device_stays_one(tmp_path, monkeypatch):
+    def full(_descriptor):
+        raise OSError(errno.ENOSPC, 'No space left on device')
+
+    (tmp_path / 'file').write_text('before')
+    with monkeypatch.context() as patch:
+        patch.setattr('os.fsync', full)
+        with pytest.raises(OSError, match=f"No space left on device: '{tmp_path}/file'"):
+            write_atomically(tmp_path / 'file', b'content')
+    assert [path.read_text() for path in tmp_path.iterdir()] == ['before']
+    write_atomically(Path('/dev/null'), b'content')
+    assert Path('/dev/null').is_char_device()
+    os.mkfifo(tmp_path / 'pipe')
+    with subprocess.Popen(['cat', tmp_path / 'pipe'], stdout=subprocess.PIPE) as reader:
+        write_atomically(tmp_path / 'pipe', b'content')
+        assert reader.communicate()[0] == b'content'
 
 
 CLOSED = """

@@ -158,6 +158,12 @@ def test_control_characters_of_a_file_reach_no_terminal(tmp_path, change):
     assert '\x1b' not in str(error.value)
 
 
+def test_a_key_that_stands_twice_is_named(tmp_path):
+    (tmp_path / 'twice.yaml').write_text(f'{PANDA.read_text()}\ntorque_rate_max: 500.0\n')
+    with pytest.raises(RobotFileError, match=r"twice\.yaml: line \d+: the key 'torque_rate_max' stands there twice"):
+        load_robot(str(tmp_path / 'twice.yaml'))
+
+
 @pytest.mark.parametrize('levels', [9, 30])
 def test_aliases_are_not_expanded(tmp_path, levels):
     path = tmp_path / 'bomb.yaml'

@@ -19,6 +19,7 @@ from typing import Any
 
 import yaml
 from shared_control.files import write_atomically
+from shared_control.strict_yaml import StrictLoader
 
 from .graph import ALL_NODES
 
@@ -77,7 +78,7 @@ def read(text: bytes, path: Path) -> dict[str, dict[str, Any]]:
         ValueError: see :func:`load`.
     """
     try:
-        content = yaml.safe_load(text.decode('utf-8'))
+        content = yaml.load(text.decode('utf-8'), StrictLoader)
     except RecursionError as error:
         raise ValueError(f'{path} is not a ROS parameter file: it is nested too deeply') from error
     except (yaml.YAMLError, ValueError) as error:  # of a date that there is none of, the latter

@@ -32,6 +32,8 @@ def test_what_is_saved_can_be_loaded(tmp_path):
 @pytest.mark.parametrize(('content', 'said'), [
     ('a: [', 'not valid YAML'),
     ('a: 2026-13-40', 'not valid YAML'),
+    ('panda_sim_node: {ros__parameters: {seed: 1, seed: 2}}', "line 1: the key 'seed' stands there twice"),
+    ('panda_sim_node: {ros__parameters: {seed: 1}}\npanda_sim_node: {ros__parameters: {}}', 'line 2: .* twice'),
     (20_000 * '[', 'nested too deeply'),
     ('- 1', 'not a ROS parameter file'),
     ('panda_sim: {ros__parameters: {mode: lockstep}}', "there is no node 'panda_sim'; there are .*panda_sim_node"),

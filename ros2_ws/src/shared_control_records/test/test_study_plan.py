@@ -142,6 +142,8 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     (PLAN, 'a: [', 'plan.yaml'),
     (PLAN, '[' * 100_000, 'plan.yaml'),
     (PLAN, f'a: {"b" * 2**20}', 'more than 1048576 bytes'),
+    ('conditions:', 'seed: 4\nseed: 5\nconditions:', "the key 'seed' stands there twice"),
+    ('alone:', 'coached:', "the key 'coached' stands there twice"),
     (PLAN, 'a: &a [1]\nb: [*a, *a]', 'line 2: aliases'),
     ('episodes: 5', 'preset: lqr, task: plate', 'conditions.coached: lqr knows the task balance'),
     ('episodes: 5', 'preset: pd, task: detour', 'conditions.coached: pd knows the task balance'),

@@ -26,6 +26,7 @@ import yaml
 
 from ..plugins import ROBOTS, load
 from ..printable import ECHO_MAX, REASON_MAX, cut, escaped, shortened
+from ..strict_yaml import StrictLoader
 from .spec import Gains, RobotSpec
 
 _VECTORS = ('q_min', 'q_max', 'qd_max', 'qdd_max', 'torque_max', 'home')
@@ -85,7 +86,7 @@ def _read(path: Path, name: str) -> RobotSpec:
     return _File(path, content).spec(name)
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(StrictLoader):
     """YAML without merge keys: robots need none, and a few of them can stand for more than a memory holds."""
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:

@@ -22,6 +22,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 from shared_control.control.sharing import Sharing
 from shared_control.plugins import WORLDS, names
 from shared_control.printable import shortened
+from shared_control.strict_yaml import StrictLoader
 from shared_control.teaching.picture import can_teach
 from shared_control.teaching.tutors import tutor_named
 from shared_control_learning.presets import preset, preset_for
@@ -204,7 +205,7 @@ class PlanFile(Section):
         return self
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(StrictLoader):
     """YAML without aliases: plans need none, and a few of them can stand for more than a memory holds."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
