@@ -31,6 +31,7 @@ class StrictLoader(yaml.SafeLoader):
         for key, _ in node.value:
             if isinstance(key, yaml.ScalarNode):
                 if (key.tag, key.value) in keys:
-                    raise ValueError(f'line {key.start_mark.line + 1}: the key {shortened(key.value)} stands there twice')
+                    line = key.start_mark.line + 1
+                    raise ValueError(f'line {line}: the key {shortened(key.value)} stands there twice')
                 keys.add((key.tag, key.value))
         return node

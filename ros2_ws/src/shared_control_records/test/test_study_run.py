@@ -86,11 +86,15 @@ def test_a_study_that_is_killed_goes_on_with_nothing_lost_and_nothing_twice(plan
     wait_until(lambda: not processes(study.pid))
     assert not is_done(second)
     kept = {path: path.stat().st_mtime_ns for path in first.iterdir()}
+    run = json.loads((second / 'run.json').read_text())
+    (second / 'run.json').write_text(json.dumps(run | {'seconds': 1000.0}))
     again = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
     assert again.returncode == 0, again.stderr
     assert 'autonomous/p01' not in again.stdout and 'autonomous/p02: not skilled' in again.stdout
     assert {path: path.stat().st_mtime_ns for path in first.iterdir()} == kept
-    assert [row['episode'] for row in load_result(second).episodes] == [1, 2]
+    result = load_result(second)
+    assert [row['episode'] for row in result.episodes] == [1, 2]
+    assert result.seconds > 1000.0, 'the part before it was killed counts'
 
 
 def test_a_study_that_is_asked_to_leave_says_how_to_go_on(plan, tmp_path):

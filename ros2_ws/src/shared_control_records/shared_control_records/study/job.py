@@ -66,13 +66,16 @@ def run_job(folder: StudyFolder, name: str) -> None:
 
 def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
     """Train with a simulated tutor or alone, then test."""
-    path, started = folder.run(job), time.monotonic()
+    path = folder.run(job)
     keeper = _Checkpoints(path, plan.checkpoints)
     training = train(
         preset_for(job.condition.task, job.condition.preset),
         job.participant.tutor if job.condition.taught else None, job.participant.seed, job.condition.episodes,
         until_skilled=True, physics=job.condition.physics, folder=path, evaluate_every=job.condition.evaluate_every,
         sharing=Sharing(job.condition.sharing), callbacks=keeper)
+    tested = time.monotonic()
+    tests = run_tests(plan, job, path / POLICY_NAME) | keeper.run_tests(plan, job)
+    testing = time.monotonic() - tested
     episodes = learned_from(read_table(path / TABLE_NAME))
     if len(training.presses) == len(episodes):  # not of a run that an older version began
         for number, row in enumerate(episodes):
@@ -80,8 +83,7 @@ def trained(folder: StudyFolder, plan: Plan, job: Job) -> RunResult:
                     'noise_share': training.noise_shares[number]}
     return RunResult(
         **describe(job, plan.people is None), first_pass=training.first_pass, skilled=training.skilled,
-        episodes=episodes, tests=run_tests(plan, job, path / POLICY_NAME) | keeper.run_tests(plan, job),
-        seconds=time.monotonic() - started)
+        episodes=episodes, tests=tests, seconds=training.seconds + testing)
 
 
 class _Checkpoints(Callbacks):
