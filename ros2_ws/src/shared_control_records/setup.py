@@ -18,7 +18,7 @@ setup(
     ],
     install_requires=[
         'shared_control', 'shared_control_sim', 'shared_control_learning', 'numpy', 'pin', 'pydantic', 'rosbags',
-        'mcap', 'zstandard', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'scipy', 'torch', 'tqdm',
+        'mcap', 'lz4', 'zstandard', 'matplotlib', 'jinja2', 'pyyaml', 'pandas', 'scipy', 'torch', 'tqdm',
     ],
     extras_require={'test': ['pytest'], 'export': ['pyarrow'], 'ray': ['ray'], 'view': ['rerun-sdk==0.41.0']},
     zip_safe=False,

@@ -23,13 +23,19 @@ import struct
 from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from functools import partial
 from itertools import pairwise
 from typing import BinaryIO, NamedTuple
 
 import numpy as np
 from rosbags.interfaces import Connection
 from rosbags.rosbag2.errors import ReaderError
-from rosbags.rosbag2.storage_mcap import ChunkInfo, McapReader, decompress
+from rosbags.rosbag2.storage_mcap import DECOMPRESSORS, ChunkInfo, McapReader, decompress
+
+from .unpack import UnpackError, allowed, unpack
+
+# rosbags unpacks whatever is there and only then compares, also on opening a file without an index.
+DECOMPRESSORS.update({name: partial(unpack, name) for name in DECOMPRESSORS})
 
 _MESSAGE, _CHUNK, _MESSAGE_INDEX = 0x05, 0x06, 0x07
 _RECORD = struct.Struct('<BQ')
@@ -76,6 +82,19 @@ class _Found(NamedTuple):
 
 class OutOfOrder(Exception):
     """Messages of a topic are not in the order of their chunks."""
+
+
+def check_sizes(storage: McapReader) -> None:
+    """Refuse an open file whose index has a chunk that would take all memory.
+
+    Raises:
+        ReaderError: it has one; the message says where.
+    """
+    for chunk in storage.chunks:
+        try:
+            allowed('a chunk', chunk.uncompressed_size)
+        except UnpackError as error:
+            raise ReaderError(f'{error}, at byte {chunk.chunk_start_offset} of {storage.path}') from error
 
 
 def read_blocks(storage: McapReader) -> Iterator[list[Block]]:
@@ -149,8 +168,11 @@ def _read(file: BinaryIO, chunk: ChunkInfo) -> tuple[bytes, bytes]:
     start = _CHUNK_HEAD.size + letters + 8
     if kind != _CHUNK or len(raw) < chunk.chunk_length or start + chunk.compressed_size > chunk.chunk_length:
         raise ReaderError(f'there is no whole chunk at {chunk.chunk_start_offset}')
-    return (decompress(raw[start:start + chunk.compressed_size], chunk.compression, size, checksum),
-            raw[chunk.chunk_length:])
+    try:
+        content = decompress(raw[start:start + chunk.compressed_size], chunk.compression, size, checksum)
+    except (ReaderError, UnpackError) as error:
+        raise ReaderError(f'{error}, at byte {chunk.chunk_start_offset} of {file.name}') from error
+    return content, raw[chunk.chunk_length:]
 
 
 def _indexed(content: bytes, indices: Sequence[bytes], starts: Sequence[int]) -> _Found | None:

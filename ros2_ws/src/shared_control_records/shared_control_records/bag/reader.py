@@ -40,13 +40,14 @@ from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
 
-from .chunks import Block, OutOfOrder, read_blocks
+from .chunks import Block, OutOfOrder, check_sizes, read_blocks
 from .fast_decode import BulkTopic, Columns, Row, command_layout, joint_state_layout, odometry_layout, wrench_layout
 from .files import BagReadError, bag_files, check_is_bag
 from .metadata import is_finished, unlisted_files
 from .recorded import BallTrack, Commands, JointStates, Judgement, Press, Series, Status, Ticks, Wrenches
 from .task import recorded_task, reported_task
 from .ticks import JointStateRows, digests, to_ns
+from .unpack import check_message
 
 _WRENCHES = (
     contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED,
@@ -112,6 +113,7 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
         _check_finished(path)
         task = task or recorded_task(path)
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+            _check_sizes(reader)
             namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
             task = task or reported_task(reader) or BALANCE
             collector = partial(_Collector, reader, namespace, task, panda() if robot is None else robot, every_tick)
@@ -139,6 +141,21 @@ def _check_finished(path: Path) -> None:
                            f'`shared-control recover {shlex.quote(str(folder))}` finishes it')
 
 
+def _check_sizes(reader: AnyReader) -> None:
+    """Refuse what would take all memory, before rosbags unpacks whatever is there.
+
+    Raises:
+        ReaderError: a chunk would; the message names file and place.
+        UnpackError: a message that is compressed by itself would.
+    """
+    for file in _storages(reader):
+        if isinstance(file, McapReader):
+            check_sizes(file)
+        if _is_packed_by_message(reader):
+            for _, _, raw in file.messages(file.connections):
+                check_message(raw)
+
+
 def recorded_namespace(bag: Path, topics: Iterable[str]) -> str:
     """The namespace of the robot whose topics a bag has, as in ``/robot1``; empty when it has none.
 
@@ -162,16 +179,29 @@ def _by_chunks(collector: '_Collector') -> '_Collector':
     Raises:
         OutOfOrder: its messages must be added one by one.
     """
-    reader, = collector.reader.readers
-    assert isinstance(reader, Reader)
-    files = reader.storage.storages if isinstance(reader.storage, DirectoryReader) else [reader.storage]
-    if reader.storage.metadata.compression_mode == 'message':
+    if _is_packed_by_message(collector.reader):
         raise OutOfOrder
-    for file in files:
+    for file in _storages(collector.reader):
         if not isinstance(file, McapReader) or (file.metadata.message_count and not file.chunks):
             raise OutOfOrder
         collector.add_file(file)
     return collector
+
+
+def _storage(reader: AnyReader) -> Any:
+    opened, = reader.readers
+    assert isinstance(opened, Reader)
+    return opened.storage
+
+
+def _storages(reader: AnyReader) -> list[Any]:
+    """What reads the files of an open bag, one each."""
+    storage = _storage(reader)
+    return storage.storages if isinstance(storage, DirectoryReader) else [storage]
+
+
+def _is_packed_by_message(reader: AnyReader) -> bool:
+    return _storage(reader).metadata.compression_mode == 'message'
 
 
 def _by_messages(collector: '_Collector') -> '_Collector':

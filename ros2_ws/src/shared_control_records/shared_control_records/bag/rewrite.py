@@ -30,6 +30,7 @@ from mcap.writer import MCAP0_MAGIC, Writer
 
 from .files import BagError, lock
 from .metadata import read_summary
+from .unpack import SpoiltError, UnpackError
 from .whole_records import UNREADABLE, damaged, whole_records
 
 
@@ -97,7 +98,10 @@ def _copy(source: IO[bytes], path: Path, writer: Writer, without: str | None,
             case Chunk():
                 try:
                     content = breakup_chunk(record, validate_crc=True)
-                except UNREADABLE:
+                except UNREADABLE as error:
+                    if isinstance(error, UnpackError) and not isinstance(error, SpoiltError):
+                        raise BagError(f'{path} is left as it is, move it away: {error}; it ends at byte '
+                                       f'{source.tell()}') from error
                     spoilt = True
                     continue
                 if spoilt:
