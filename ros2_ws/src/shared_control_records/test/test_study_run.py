@@ -24,13 +24,15 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 from shared_control.cli import main
 from shared_control_learning.episode_table import read_rows
+from shared_control_records.study import result as result_module
 from shared_control_records.study.folder import StudyFolder
 from shared_control_records.study.plan import load_plan
 from shared_control_records.study.pool import on_ray, on_this_machine
-from shared_control_records.study.result import RESULT, TESTS, is_done, load_result
+from shared_control_records.study.result import RESULT, TESTS, ResultError, is_done, load_result
 from shared_control_testing.studies import made_study
 
 PLAN = """
@@ -143,6 +145,25 @@ def test_runs_that_cannot_be_read_are_named_beside_the_table_of_the_others(plan,
         [left_out] = said['left_out']
         assert 'runs/autonomous/p01 is damaged' in left_out and str(tmp_path) not in left_out
         assert str(second) not in error
+
+
+@pytest.mark.parametrize(('array', 'said'), [
+    ('alone/seconds', 'bytes unpacked, expected 100000 at the most'),
+    ('alone/secrets', "has 'alone/secrets.npy', expected of each test seconds, position_error"),
+    ('secrets', "has 'secrets.npy', expected of each test seconds")])
+def test_tests_that_would_take_all_memory_or_are_none_are_refused_unread(plan, tmp_path, monkeypatch, array, said):
+    plan.write_text(PLAN.replace('tests: []', 'tests: [perturbation]'))
+    folder = made_study(tmp_path / 'study', plan)
+    run = folder.run(load_plan(plan).jobs[0])
+    whole = dict(np.load(run / TESTS))
+    np.savez_compressed(run / TESTS, **whole, **{array: np.zeros(1_000_000)})
+    monkeypatch.setattr(result_module, 'TESTS_MOST', 100_000)
+    monkeypatch.setattr(np, 'load', None)
+    with pytest.raises(ResultError, match=rf'tests\.npz.* {said}'):
+        load_result(run)
+    monkeypatch.undo()
+    np.savez_compressed(run / TESTS, **whole)
+    assert load_result(run).tests
 
 
 def test_a_study_of_people_names_them_too(plan, tmp_path, monkeypatch, capfd):

@@ -16,6 +16,7 @@
 
 import io
 import json
+import zipfile
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,10 @@ RESULT = 'result.json'
 TESTS = 'tests.npz'
 NUMBERS = ('episode', 'seconds', 'return', 'fallen', 'mean_abs_human', 'mean_abs_agent', 'intervention_rate')
 """What a report needs of every episode of a run."""
+TESTS_MOST = 256 * 2**20
+"""Bytes that the arrays of a run may take together. All tests of a run take 6 MB, and 0.2 MB more each checkpoint."""
+_ARRAYS = ('seconds', *TRACKS, 'fallen', 'success')
+"""What there is of each test."""
 
 
 class ResultError(ValueError):
@@ -103,14 +108,26 @@ def load_result(folder: Path) -> RunResult | None:
         return None
     try:
         content = json.loads((folder / RESULT).read_text(encoding='utf-8'))
+        _check_arrays(folder / TESTS)
         with np.load(folder / TESTS, allow_pickle=False) as packed:
-            arrays = {name: packed[name] for name in packed.files}
-        names = dict.fromkeys(name.rpartition('/')[0] for name in arrays)
-        tests = {name: ProtocolResult(name, **{
-            key: arrays[f'{name}/{key}'] for key in ('seconds', *TRACKS, 'fallen', 'success')}) for name in names}
+            names = dict.fromkeys(name.rpartition('/')[0] for name in packed.files)
+            tests = {name: ProtocolResult(name, **{key: packed[f'{name}/{key}'] for key in _ARRAYS}) for name in names}
         return _RUN_RESULT.validate_python({**content, 'tests': tests})
     except Exception as error:  # a damaged zip or JSON file raises errors of many kinds
         raise _damaged(folder, error) from error
+
+
+def _check_arrays(path: Path) -> None:
+    """Refuse what is not of a test, or would take all memory, before anything of it is unpacked."""
+    with zipfile.ZipFile(path) as packed:
+        members = packed.infolist()
+    unknown = [member.filename for member in members
+               if member.filename.rpartition('/')[2] not in [f'{name}.npy' for name in _ARRAYS]]
+    if unknown:
+        raise ValueError(f'{path.name} has {unknown[0]!r}, expected of each test {", ".join(_ARRAYS)}')
+    size = sum(member.file_size for member in members)
+    if size > TESTS_MOST:
+        raise ValueError(f'{path.name} has {size} bytes unpacked, expected {TESTS_MOST} at the most')
 
 
 def load_brief(folder: Path) -> Brief:
