@@ -15,6 +15,7 @@
 """A bag as Parquet and as a LeRobot data set, read back."""
 
 import json
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -29,7 +30,7 @@ from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import Balance
 from shared_control.tasks.plate import Plate
 from shared_control_records.bag.reader import read_bag
-from shared_control_records.export.frames import episode_frames
+from shared_control_records.export.frames import episode_frames, session_names
 from shared_control_records.export.lerobot import features, write_lerobot
 from shared_control_records.export.parquet import write_parquet
 from shared_control_testing import sessions as made
@@ -93,8 +94,9 @@ def test_a_bag_without_the_parts_of_the_sum_is_exported_without_them(lessons, fr
     write_lerobot(without, tmp_path / 'set')
     named = json.loads((tmp_path / 'set/meta/info.json').read_text())['features']
     assert 'action' in named and 'intervention' not in named and 'complementary_info.action_human' not in named
-    with pytest.raises(ValueError, match=r'with the parts of the sum.*without the parts of the sum.*export them apart'):
-        write_lerobot([*frames, *without], tmp_path / 'both')
+    for write in (write_lerobot, write_parquet):
+        with pytest.raises(ValueError, match=r': \w+, with the parts of the sum; .*, without.*export them apart'):
+            write([*frames, *without], tmp_path / 'both')
 
 
 def test_a_step_has_what_the_learner_saw_and_earned(frames):
@@ -202,7 +204,8 @@ def test_the_command_says_where_and_never_overwrites_what_is_not_its_own(bag, tm
     assert run(bag, '--output', notes) == 2 and notes.read_text() == 'of somebody'
     assert f'{notes} exists already and is no Parquet file' in capsys.readouterr().err
     assert run(mcap, '--output', tmp_path / 'one.parquet') == 0, 'it may be made anew'
-    assert run(bag, mcap, '--format', 'lerobot', '--output', tmp_path / 'two') == 0
+    shutil.copytree(bag, tmp_path / 'copy')
+    assert run(bag, tmp_path / 'copy', '--format', 'lerobot', '--output', tmp_path / 'two') == 0
     assert '260 frames of 4 episodes' in capsys.readouterr().out
     two = pd.read_parquet(tmp_path / 'two/meta/episodes/chunk-000/file-000.parquet')
     assert two.session_episode.tolist() == [1, 2, 1, 2]
@@ -211,3 +214,56 @@ def test_the_command_says_where_and_never_overwrites_what_is_not_its_own(bag, tm
     capsys.readouterr()
     assert run(tmp_path / 'none.mcap') == 2
     assert 'there is no bag' in capsys.readouterr().err
+
+
+@pytest.fixture
+def export(tmp_path, monkeypatch, capsys):
+    """``export(session, ...)``: exit code, and what was said."""
+    def run(*sessions):
+        monkeypatch.setattr('sys.argv', ['shared-control', 'export', *map(str, sessions),
+                                         '--output', str(tmp_path / 'one.parquet')])
+        return main(), ''.join(capsys.readouterr())
+    return run
+
+
+def session(bag, folder, task='balance'):
+    shutil.copytree(bag, folder / 'bag')
+    (folder / 'settings.json').write_text(json.dumps({'task': task}))
+    return folder
+
+
+@pytest.mark.parametrize(('folders', 'named'), [
+    (('p01/coached', 'p02/thesis'), ['coached', 'thesis']),
+    (('p01/coached', 'p02/coached', 'p02/thesis'), ['p01/coached', 'p02/coached', 'p02/thesis'])])
+def test_sessions_go_by_what_tells_them_apart(bag, tmp_path, export, folders, named):
+    code, _ = export(*(session(bag, tmp_path / 'people' / folder) for folder in folders))
+    table = pd.read_parquet(tmp_path / 'one.parquet')
+    assert code == 0 and table.groupby('session').size().to_dict() == dict.fromkeys(named, sum(STEPS))
+
+
+def test_names_are_those_of_folders_as_they_are(tmp_path):
+    for name in ('at.noon', 'at.night'):
+        (tmp_path / name).mkdir()
+    (tmp_path / 'one.mcap').touch()
+    assert session_names([tmp_path / 'at.noon', tmp_path / 'x' / '..' / 'at.night', tmp_path / 'one.mcap']) == [
+        'at.noon', 'at.night', 'one']
+    parts = [tmp_path / 's1' / 'bag' / f'bag_{number}.mcap' for number in range(2)]
+    parts[0].parent.mkdir(parents=True)
+    for part in parts:
+        part.touch()
+    assert session_names(parts) == ['s1', 's1'], 'two files of a bag are of one session'
+
+
+def test_a_session_that_is_given_twice_is_refused(bag, tmp_path, export):
+    one = session(bag, tmp_path / 's1')
+    file, = (one / 'bag').glob('*.mcap')
+    (tmp_path / 'link').symlink_to(one)
+    for other in (one, one / 'bag', file, tmp_path / 'link', one / '..' / 's1'):
+        code, said = export(one, other)
+        assert code == 2 and f'the bag {file if other == file else one / "bag"} is given twice' in said
+
+
+def test_sessions_of_several_tasks_are_refused_before_one_is_read(bag, tmp_path, export, monkeypatch):
+    monkeypatch.setattr('shared_control_records.bag.reader._Collector', None)
+    code, said = export(*(session(bag, tmp_path / task, task) for task in ('balance', 'plate', 'detour')))
+    assert code == 2 and 'these sessions differ (balance: balance; plate: plate; detour: detour): export them' in said

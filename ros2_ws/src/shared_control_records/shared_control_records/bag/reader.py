@@ -16,8 +16,8 @@
 
 import shlex
 from collections import Counter
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -109,17 +109,37 @@ def read_bag(path: Path, task: Task | None = None, robot: RobotSpec | None = Non
         BagReadError: there is none, or it was not finished, or it is damaged.
     """
     path = Path(path)
+    with _opened(path) as reader:
+        namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
+        task = task or _task(path, reader)
+        collector = partial(_Collector, reader, namespace, task, panda() if robot is None else robot, every_tick)
+        with suppress(OutOfOrder):
+            return _by_chunks(collector()).finish(path)
+        return _by_messages(collector()).finish(path)  # rare, and a third of the speed
+
+
+def read_task(path: Path) -> Task:
+    """What was learned in a bag, as :func:`read_bag` has it when it is not told, without reading the bag.
+
+    Raises:
+        BagReadError: there is none, or it was not finished, or it is damaged.
+    """
+    with _opened(path) as reader:
+        return _task(path, reader)
+
+
+def _task(path: Path, reader: AnyReader) -> Task:
+    return recorded_task(path) or reported_task(reader) or BALANCE
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[AnyReader]:
+    """Open a bag, and turn whatever goes wrong with it into a :class:`BagReadError`."""
     try:
         _check_finished(path)
-        task = task or recorded_task(path)
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             _check_sizes(reader)
-            namespace = recorded_namespace(path, [connection.topic for connection in reader.connections])
-            task = task or reported_task(reader) or BALANCE
-            collector = partial(_Collector, reader, namespace, task, panda() if robot is None else robot, every_tick)
-            with suppress(OutOfOrder):
-                return _by_chunks(collector()).finish(path)
-            return _by_messages(collector()).finish(path)  # rare, and a third of the speed
+            yield reader
     except BagReadError:
         raise
     except Exception as error:  # a damaged file makes rosbags and the decompressor raise errors of many kinds

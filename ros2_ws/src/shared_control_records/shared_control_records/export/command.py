@@ -32,7 +32,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
         examples=['shared-control export out/demo',
                   'shared-control export out/sessions/p1 out/sessions/p2 --format lerobot --output out/data_set'])
     parser.add_argument('sessions', type=Path, nargs='+', metavar='SESSION',
-                        help="a session's folder, its bag's folder, or an MCAP file; several become one data set")
+                        help="a session's folder, its bag's folder, or an MCAP file; several become one data set, "
+                             'in which they go by the names of their folders, or by paths where names are alike')
     parser.add_argument('--format', choices=FORMATS, default='parquet', help='Parquet file, or LeRobot data set')
     parser.add_argument('--output', type=Path, default=None, metavar='PATH',
                         help='file (parquet) or new folder (lerobot) (default: beside the first bag)')
@@ -44,17 +45,23 @@ def run(args: argparse.Namespace) -> int:
     """Export bags; the exit code."""
     # Imported late: pyarrow and the robot's model take a second, which `--help` need not wait for.
     from ..bag.files import find_bag
-    from ..bag.reader import read_bag
-    from .frames import episode_frames
-    from .lerobot import write_lerobot
+    from ..bag.reader import read_bag, read_task
+    from .frames import check_alike, episode_frames, session_names
+    from .lerobot import refuse_filled, write_lerobot
     from .parquet import MAGIC, write_parquet
     suffix = '.parquet' if args.format == 'parquet' else '_lerobot'
     bags = [find_bag(path) for path in args.sessions]
+    sessions = session_names(bags)
     output = args.output or bags[0].absolute().with_name(bags[0].stem + suffix)
     if args.format == 'parquet':
         refuse_another_file(output, 'Parquet file', MAGIC)
+    else:
+        refuse_filled(output)
     task = load(TASKS, args.task)() if args.task else None
-    episodes = [frames for bag in bags for frames in episode_frames(read_bag(bag, task))]
+    if task is None and len(bags) > 1:  # before the first is read, which takes a while
+        check_alike((session, read_task(bag).name) for session, bag in zip(sessions, bags, strict=True))
+    episodes = [frames for session, bag in zip(sessions, bags, strict=True)
+                for frames in episode_frames(read_bag(bag, task), session)]
     if args.format == 'parquet':
         write_parquet(episodes, output)
     else:

@@ -14,7 +14,8 @@
 
 """The episodes of a bag, time-aligned at the policy's rate."""
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -45,7 +46,7 @@ class EpisodeFrames:
 
     task: Task
     session: str
-    """Name of the session, or of its bag."""
+    """Name of the session, or of its bag; as in :func:`session_names`."""
     devices: str
     """What was in the hand in the session: ``keys (terminal), stick (joy)``; empty: nothing was used."""
     number: int
@@ -104,11 +105,62 @@ def action_rows(task: Task) -> tuple[int, ...]:
     return tuple(sorted({3, 4, *task.axes}))
 
 
-def episode_frames(bag: Bag) -> list[EpisodeFrames]:
+def session_names(bags: Sequence[Path]) -> list[str]:
+    """What the session of each bag is called: as its folder, or as the bag where that is in no session's folder.
+
+    Where sessions in several folders have one name, all go by their paths from the folder that they have in common.
+
+    Raises:
+        ValueError: a bag is given twice, or beside a file of it.
+    """
+    resolved = [bag.resolve() for bag in bags]
+    for bag in resolved:
+        if resolved.count(bag) > 1 or (bag.is_file() and bag.parent in resolved):
+            raise ValueError(f'the bag {bag} is given twice, be it by its session, its folder or a file: name it once')
+    places = [_session(bag) for bag in bags]
+    if len({place.name for place in places}) == len(set(places)):
+        return [place.name for place in places]
+    root = os.path.commonpath([place.parent for place in places])
+    return [str(place.relative_to(root)) for place in places]
+
+
+def check_alike(differing: Iterable[tuple[str, str]]) -> None:
+    """Refuse sessions for one data set that would not have the same columns in it.
+
+    Args:
+        differing: names of sessions, and what each is of, in words.
+
+    Raises:
+        ValueError: they differ; the message names one of each kind.
+    """
+    found: dict[str, str] = {}
+    for session, what in differing:
+        found.setdefault(what, session)
+    if len(found) > 1:
+        kinds = '; '.join(f'{session}: {what}' for what, session in found.items())
+        raise ValueError(f'a data set has the same columns throughout, and these sessions differ ({kinds}): '
+                         'export them apart')
+
+
+def common_task(episodes: Sequence[EpisodeFrames]) -> tuple[Task, bool]:
+    """The task of all episodes, and whether it is known what agent and human gave.
+
+    Raises:
+        ValueError: that is not the same for all; the message names the sessions.
+    """
+    check_alike((episode.session, f'{episode.task.name}, {"with" if episode.human is not None else "without"} the '
+                                  'parts of the sum') for episode in episodes)
+    return episodes[0].task, episodes[0].human is not None
+
+
+def episode_frames(bag: Bag, session: str | None = None) -> list[EpisodeFrames]:
     """The finished episodes of a bag, in their order, without those that a person has discarded.
 
     A controller that publishes no parts of the sum (another one, or of the first version) leaves ``agent`` and
     ``human`` out.
+
+    Args:
+        session: what the session is called; as :func:`session_names` has it when not given.
 
     Raises:
         ValueError: it has no finished episode that counts, or nothing was applied, or one of the two parts alone; the
@@ -125,7 +177,8 @@ def episode_frames(bag: Bag) -> list[EpisodeFrames]:
                          'whole')
     tracks = episode_tracks(bag)
     between = cache(Wrenches.between)  # most episodes are of one run, and each would sort all of it
-    frames = [_frames(bag, track, all(parts.values()), between) for track in tracks
+    session = session_names([bag.path])[0] if session is None else session
+    frames = [_frames(bag, session, track, all(parts.values()), between) for track in tracks
               if track.verdict is not Verdict.DISCARD]
     if not frames:
         discarded = ' that was not discarded' if tracks else ''
@@ -133,7 +186,7 @@ def episode_frames(bag: Bag) -> list[EpisodeFrames]:
     return frames
 
 
-def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool,
+def _frames(bag: Bag, session: str, track: EpisodeTrack, with_parts: bool,
             between: Callable[[Wrenches, tuple[int, int]], Wrenches]) -> EpisodeFrames:
     window = run_window(bag, track.received_ns[0])
     agent = between(bag.agent, window).stamp_ns
@@ -159,7 +212,7 @@ def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool,
     poses = [model.tray_pose(row) for row in q]
     count = len(begin)
     return EpisodeFrames(
-        task, _session(bag.path), ', '.join(bag.devices), track.number, track.phase, begin,
+        task, session, ', '.join(bag.devices), track.number, track.phase, begin,
         q[:count], bag.joint_states.qd[joints][:count], position[:count], velocity[:count], errors[:count],
         pitch=np.array([pitch(rotation) for _, rotation in poses])[:count],
         on_tray=np.array([rotation.T[:2] @ (where - origin) for (origin, rotation), where in zip(
@@ -171,11 +224,13 @@ def _frames(bag: Bag, track: EpisodeTrack, with_parts: bool,
         verdict=track.verdict, applied=moments['applied'], agent=moments.get('agent'), human=moments.get('human'))
 
 
-def _session(bag: Path) -> str:
-    """A session's folder has its bag under this name; any other bag goes by its own."""
-    bag = bag.absolute()
+def _session(bag: Path) -> Path:
+    """The folder of a bag's session, where the bag is called so; any other bag, without the ending of a file."""
+    bag = Path(os.path.abspath(bag))
     folder = bag.parent if bag.is_file() else bag
-    return folder.parent.name if folder.name == 'bag' else bag.stem
+    if folder.name == 'bag':
+        return folder.parent
+    return bag.with_suffix('') if bag.is_file() else bag
 
 
 def _newest(received_ns: np.ndarray, stamps_ns: np.ndarray, at_ns: np.ndarray, window: tuple[int, int]) -> np.ndarray:

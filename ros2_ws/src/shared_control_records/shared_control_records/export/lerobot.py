@@ -39,7 +39,7 @@ from shared_control.robot.spec_file import panda
 from shared_control.tasks.task import Task
 from shared_control.wrench import AXIS_NAMES
 
-from .frames import EpisodeFrames, action_rows
+from .frames import EpisodeFrames, action_rows, common_task
 
 VERSION = 'v3.0'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
@@ -96,9 +96,8 @@ def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
         FileExistsError: it exists and is not empty.
         ValueError: the episodes are not of one task, or some lack the parts of the sum; the message names the sessions.
     """
-    task, with_parts = _common(episodes)
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise FileExistsError(f'{folder} exists already: choose another --output')
+    task, with_parts = common_task(episodes)
+    refuse_filled(folder)
     try:
         _write(episodes, task, with_parts, folder)
     except BaseException:  # an interrupt, too: half a data set is in the way of the next
@@ -107,6 +106,16 @@ def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
         with suppress(OSError):
             folder.rmdir()
         raise
+
+
+def refuse_filled(folder: Path) -> None:
+    """Refuse a folder in which no data set can be made.
+
+    Raises:
+        FileExistsError: it exists and is not empty.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise FileExistsError(f'{folder} exists already: choose another --output')
 
 
 def _write(episodes: list[EpisodeFrames], task: Task, with_parts: bool, folder: Path) -> None:
@@ -140,19 +149,6 @@ def _write(episodes: list[EpisodeFrames], task: Task, with_parts: bool, folder: 
 
 def _first_file() -> str:
     return FILE.format(chunk_index=0, file_index=0) + '.parquet'
-
-
-def _common(episodes: list[EpisodeFrames]) -> tuple[Task, bool]:
-    """The task of all episodes, and whether it is known what agent and human gave."""
-    found: dict[tuple[Task, bool], str] = {}
-    for episode in episodes:
-        found.setdefault((episode.task, episode.human is not None), episode.session)
-    if len(found) > 1:
-        what = '; '.join(f'{session}: {task.name}, {"with" if parts else "without"} the parts of the sum'
-                         for (task, parts), session in found.items())
-        raise ValueError(f'a LeRobot data set has the same columns throughout, and these sessions differ ({what}): '
-                         'export them apart')
-    return next(iter(found))
 
 
 def _of_the_session(episode: EpisodeFrames) -> tuple[str, int, str, str, str, str]:

@@ -22,7 +22,7 @@ import pyarrow.parquet as pq
 from shared_control.files import write_atomically
 from shared_control.wrench import AXIS_NAMES
 
-from .frames import EpisodeFrames
+from .frames import EpisodeFrames, common_task
 
 UNITS = {'seconds': 's', 'stamp_ns': 'ns', 'q': 'rad', 'qd': 'rad/s', 'ball': 'm', 'ball_v': 'm/s',
          'position_error': 'm', 'pitch': 'rad', 'on_tray': 'm', **dict.fromkeys(AXIS_NAMES[3:], 'N m')}
@@ -32,7 +32,15 @@ MAGIC = b'PAR1'
 
 
 def write_parquet(episodes: list[EpisodeFrames], path: Path) -> None:
-    """Write the episodes to ``path``. Each column carries its unit in the metadata of its field."""
+    """Write the episodes to ``path``. Each column carries its unit in the metadata of its field.
+
+    Args:
+        episodes: of one session or several, of one task.
+
+    Raises:
+        ValueError: the episodes are not of one task, or some lack the parts of the sum; the message names the sessions.
+    """
+    common_task(episodes)
     content = pa.BufferOutputStream()
     pq.write_table(pa.concat_tables([_table(episode) for episode in episodes]), content)
     write_atomically(path, content.getvalue())
