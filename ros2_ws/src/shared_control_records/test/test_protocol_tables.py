@@ -27,7 +27,7 @@ from shared_control_learning.episode_table import TABLE_NAME
 from shared_control_learning.evaluation.result import ProtocolResult
 from shared_control_learning.evaluation.statistics import curve, episode_figures, mean_and_sem, policy_figures
 from shared_control_learning.policy_file import POLICY_NAME, PolicyFileError, save_policy
-from shared_control_learning.presets import COACHED
+from shared_control_learning.presets import COACHED, preset_for
 from shared_control_learning.training import RUN_NAME
 from shared_control_records.evaluation.command import add_command
 from shared_control_records.evaluation.figures import plots
@@ -164,10 +164,19 @@ def test_policies_are_found_in_folders_and_named_by_what_differs(session):
     assert list(load_policies([session / 's', session / 'run' / 'policy.safetensors'])) == [
         's', 'run/policy.safetensors']
     assert list(load_policies([session / 'run'])) == ['run']
-    with pytest.raises(ValueError, match='twice'):
-        load_policies([session / 's', session / 's' / '..' / 's'])
+    for other in ('s/../s', 's/learner', 's/learner/policy.safetensors'):
+        with pytest.raises(ValueError, match=rf'{session}/s/learner/policy\.safetensors is given twice'):
+            load_policies([session / 's', session / 'run', session / other])
     with pytest.raises(PolicyFileError, match='no policy in'):
         load_policies([session])
+
+
+def test_policies_of_several_tasks_are_refused_before_one_is_tested(session, monkeypatch):
+    (session / 'plate').mkdir()
+    save_policy(preset_for('plate').make(1), session / 'plate' / 'policy.safetensors')
+    monkeypatch.setattr('shared_control_learning.evaluation.run.run_protocol', None)
+    with pytest.raises(ValueError, match=r'\(s: balance, plate: plate\): test those of each task apart'):
+        evaluate(session / 's', session / 'plate')
 
 
 def evaluate(*arguments):

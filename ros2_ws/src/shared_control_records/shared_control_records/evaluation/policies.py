@@ -40,26 +40,33 @@ def load_policies(paths: Sequence[Path], lerobot_python: Path | None = None, tas
 
     Raises:
         PolicyFileError: one is missing or unusable, or a folder has none.
-        ValueError: one is given twice.
+        ValueError: one is given twice, or they are of several tasks.
     """
     absolute = [path.expanduser().resolve() for path in paths]
-    if len(set(absolute)) < len(absolute):
-        raise ValueError(f'a policy is given twice: {", ".join(map(str, paths))}')
+    places = [_place(path).resolve() for path in absolute]
+    if twice := [place for place in places if places.count(place) > 1]:
+        raise ValueError(f'the policy {twice[0]} is given twice, be it by its folder or by the file: name it once')
     root = os.path.commonpath([path.parent for path in absolute])
-    return {str(path.relative_to(root)): _load(path, lerobot_python, task) for path in absolute}
+    policies = {str(path.relative_to(root)): _load(place, lerobot_python, task)
+                for path, place in zip(absolute, places, strict=True)}
+    if len({policy.task.name for policy in policies.values()}) > 1:
+        tasks = ', '.join(f'{name}: {policy.task.name}' for name, policy in policies.items())
+        raise ValueError(f'policies of several tasks are not one condition ({tasks}): test those of each task apart')
+    return policies
 
 
-def _load(path: Path, lerobot_python: Path | None, task: Task) -> Policy:
-    if not LeRobotPolicy.is_at(path):
-        return load_policy(_policy_file(path))
+def _load(place: Path, lerobot_python: Path | None, task: Task) -> Policy:
+    if not LeRobotPolicy.is_at(place):
+        return load_policy(place)
     if lerobot_python is None:
-        raise ValueError(f'{path} is a policy of LeRobot: --lerobot-python FILE says which Python lerobot is installed '
-                         'for')
-    return LeRobotPolicy(path, lerobot_python, task)
+        raise ValueError(f'{place} is a policy of LeRobot: --lerobot-python FILE says which Python lerobot is '
+                         'installed for')
+    return LeRobotPolicy(place, lerobot_python, task)
 
 
-def _policy_file(path: Path) -> Path:
-    if not path.is_dir():
+def _place(path: Path) -> Path:
+    """A policy's file, or the folder of one of LeRobot."""
+    if not path.is_dir() or LeRobotPolicy.is_at(path):
         return path
     places = (path / POLICY_NAME, SessionFolder(path).policy)
     found = next((place for place in places if place.exists()), None)
