@@ -82,8 +82,8 @@ def test_the_table_counts_and_averages():
 
 def test_files_hold_every_sample_once(tmp_path):
     results = {'a': [constant(0.01, 0.02)], 'b': [constant(0.03, 0.04, fallen_after=100)]}
-    write_csv(results, tmp_path)
-    episodes = pd.read_csv(tmp_path / 'tested_episodes.csv')
+    write_csv(results, 'randomized', tmp_path)
+    episodes = pd.read_csv(tmp_path / 'randomized_episodes.csv')
     assert list(episodes.position_error.round(4)) == [0.01, 0.02, 0.03, 0.04]
     tracks = pd.read_csv(tmp_path / 'randomized_tracks.csv')
     assert len(tracks) == 3 * STEPS + 100
@@ -100,8 +100,20 @@ def test_files_hold_every_sample_once(tmp_path):
 def test_tests_may_be_written_into_the_folder_of_a_run(tmp_path):
     for name in (TABLE_NAME, RUN_NAME, POLICY_NAME):
         (tmp_path / name).write_text("the run's")
-    write_csv({'a': [constant(0.01, 0.02)]}, tmp_path)
+    write_csv({'a': [constant(0.01, 0.02)]}, 'randomized', tmp_path)
     assert {(tmp_path / name).read_text() for name in (TABLE_NAME, RUN_NAME, POLICY_NAME)} == {"the run's"}
+
+
+def test_tests_of_several_protocols_are_side_by_side_in_a_folder(tmp_path):
+    protocols = {'randomized': ['randomized'], 'perturbation': ['perturbation'], 'transfer': ['transfer: as taught'],
+                 'trajectory': ['trajectory 0.25 Hz', 'trajectory 0.5 Hz']}
+    written = {}
+    for protocol, tests in protocols.items():
+        write_csv({'a': [constant(0.01, test=test) for test in tests]}, protocol, tmp_path)
+        found = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+        assert written.items() <= found.items()
+        assert set(pd.read_csv(tmp_path / f'{protocol}_episodes.csv').test) == set(tests)
+        written = found
 
 
 @pytest.mark.parametrize(('test', 'numbers'), [('perturbation', ['fig18', 'fig19']), ('trajectory 0.5 Hz', ['fig23'])])
@@ -147,7 +159,7 @@ def test_the_test_on_other_arms_is_drawn_and_written(tmp_path):
     assert [label.get_text() for label in bars.get_yticklabels()] == ['as taught', 'odd']
     assert [bar.get_width() for bar in bars.patches] == [100.0, 50.0]
     assert [line.get_xdata()[0] for line in dots.lines] == pytest.approx([10.0, 30.0])
-    write_csv(results, tmp_path)
+    write_csv(results, 'transfer', tmp_path)
     assert (tmp_path / 'transfer_as_taught_tracks.csv').exists()
 
 

@@ -112,7 +112,7 @@ def _test(policies: dict[str, Any], args: argparse.Namespace, seed: int) -> int:
     write_json({'protocol': args.protocol, 'physics': args.physics, 'seed': seed, **as_json(results)}, args.json)
     if args.output:
         args.output.mkdir(parents=True, exist_ok=True)
-        write_csv(results, args.output)
+        write_csv(results, args.protocol, args.output)
         found = [transfer_plot(results)] if is_transfer else [
             plot for tests in by_test(results).values() for plot in plots(tests)]
         write_captions(found, args.output / f'{args.protocol}_captions.md')

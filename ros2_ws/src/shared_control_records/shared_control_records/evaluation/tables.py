@@ -34,8 +34,6 @@ _COLUMNS: dict[str, tuple[str, float, str]] = {
     'velocity_error_settled': ('last 3 s', 1e3, '.2f'), 'agent_moment': ('|M_yai| N m', 1.0, '.2f'),
     'k_w': ('k_w', 1.0, '.4f'), 'one_minus_k_w_squared': ('1 - k_w^2', 1.0, '.4f')}
 """Head, factor and format of a column, by the name of its figure."""
-EPISODES_NAME = 'tested_episodes.csv'
-"""Not as the table of the taught episodes is called: tests may be written into the folder of a run."""
 
 
 def by_test(results: Results) -> dict[str, list[ProtocolResult]]:
@@ -80,13 +78,16 @@ def slug(test: str) -> str:
     return re.sub(r'[^a-z0-9.+-]+', '_', test.lower())
 
 
-def write_csv(results: Results, folder: Path) -> None:
-    """``tested_episodes.csv``, a row an episode; and for each test its tracks and their mean and SEM over time."""
+def write_csv(results: Results, protocol: str, folder: Path) -> None:
+    """``PROTOCOL_episodes.csv``, a row an episode; and for each test its tracks and their mean and SEM over time.
+
+    Files are called by the protocol or the test: those of others may be in the folder, and those of a training run.
+    """
     episodes = [
         {'test': result.test, 'policy': name, 'episode': number, **figures}
         for name, tests in results.items() for result in tests
         for number, figures in enumerate(episode_figures(result), start=1)]
-    _write(pd.DataFrame(episodes), folder / EPISODES_NAME)
+    _write(pd.DataFrame(episodes), folder / f'{protocol}_episodes.csv')
     for test, tests in by_test(results).items():
         _write(pd.concat([_tracks(name, result) for name, result in zip(results, tests, strict=True)]),
                folder / f'{slug(test)}_tracks.csv')
