@@ -27,15 +27,19 @@ from shared_control_records.export.frames import action_rows
 
 @pytest.fixture
 def python(tmp_path):
-    """A Python that answers with the sum of what was seen, as M_x and ten times that as M_y."""
+    """A Python that answers with the sum of what was seen, as M_x and ten times that as M_y, and warns a lot."""
     script = tmp_path / 'python'
     script.write_text(f"""#!{sys.executable}
 import json, sys
+sys.stderr.write("a warning\\n" * 20_000)
 if not sys.argv[2].endswith("good"):
-    sys.exit("ValueError: no policy of that kind")
+    sys.exit("ValueError: no policy of that kind\\n")
 print("ready", flush=True)
 for line in sys.stdin:
+    sys.stderr.write("a warning\\n" * 20_000)
     total = sum(json.loads(line))
+    if total > 1000.0:
+        sys.exit("OverflowError: too much")
     print(json.dumps([total, 10 * total]), flush=True)
 """)
     script.chmod(0o755)
@@ -53,6 +57,13 @@ def test_moments_become_actions_along_the_axes_of_the_task(python, tmp_path):
         assert policy.act(np.array([0.25, 0.25], np.float32)) == pytest.approx(expected)
         assert policy.act(np.array([-9.0], np.float32))[-1] == -1.0
         policy.close()
+
+
+def test_the_last_that_it_said_is_the_reason_why_there_is_no_answer(python, tmp_path):
+    policy = LeRobotPolicy(tmp_path / 'good', python, BALANCE)
+    with pytest.raises(ValueError, match=r'good: OverflowError: too much$'):
+        policy.act(np.array([2000.0], np.float32))
+    policy.close()
 
 
 def test_what_cannot_be_used_is_named(python, tmp_path):

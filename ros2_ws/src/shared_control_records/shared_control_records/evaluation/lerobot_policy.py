@@ -21,6 +21,8 @@ and Python than this project.
 import json
 import subprocess
 from pathlib import Path
+from tempfile import TemporaryFile
+from typing import IO
 
 import numpy as np
 from shared_control.processes import leave_with_the_parent
@@ -51,8 +53,10 @@ class LeRobotPolicy:
     def __init__(self, folder: Path, python: Path, task: Task):
         self.task = task
         self._folder = folder
+        # No pipe: nobody reads what libraries warn of, and a full one holds the process up.
+        self._said = TemporaryFile('w+', encoding='utf-8', errors='replace')  # noqa: SIM115 - closed with the process
         self._process = subprocess.Popen(
-            [python, SERVER, folder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            [python, SERVER, folder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said, text=True,
             preexec_fn=leave_with_the_parent)
         self._answer()
 
@@ -72,12 +76,20 @@ class LeRobotPolicy:
         """End the process."""
         self._process.kill()
         self._process.communicate()
+        self._said.close()
 
     def _answer(self) -> str:
         assert self._process.stdout is not None
         line = self._process.stdout.readline()
         if not line:
-            _, errors = self._process.communicate()
-            reason = (errors.strip().splitlines() or ['no reason given'])[-1]
-            raise ValueError(f'LeRobot cannot use the policy in {self._folder}: {reason}')
+            self._process.wait()
+            raise ValueError(f'LeRobot cannot use the policy in {self._folder}: {_last_line(self._said)}')
         return line
+
+
+def _last_line(said: IO[str]) -> str:
+    said.seek(0)
+    last = 'no reason given'
+    for line in said:
+        last = line.strip() or last
+    return last
