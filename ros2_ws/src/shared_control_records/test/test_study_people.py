@@ -40,7 +40,7 @@ from shared_control_records.study.asking import TerminalAsker
 from shared_control_records.study.folder import StudyError, StudyFolder
 from shared_control_records.study.form_page import FormPage
 from shared_control_records.study.job import run_job, taught_by_a_person
-from shared_control_records.study.notes import read_notes
+from shared_control_records.study.notes import add_note, read_notes, why_excluded
 from shared_control_records.study.people import INTERRUPTED, asker_of, lead_through, withdraw
 from shared_control_records.study.plan_file import Question
 from shared_control_records.study.progress import SCALES, Progress, ProgressError
@@ -528,9 +528,35 @@ def test_what_people_said_is_a_table_before_anything_is_tested(study, answers, t
         ('coached', 'False', ''), ('thesis', 'False', '')]
 
 
+@pytest.mark.parametrize(('torn', 'kept'), [
+    (b'now,exclude,"the phone rang, and', ['the phone rang, and']), (b'now,exclude,"said ""no', ['said "no']),
+    (b'now,note,caf\xc3', ['caf\ufffd']), (b'now,note,left by an editor', ['left by an editor'])])
+def test_a_line_that_was_torn_off_hides_no_later_one(tmp_path, torn, kept):
+    add_note(tmp_path, 'exclude', 'came late')
+    with (tmp_path / 'notes.csv').open('ab') as file:
+        file.write(torn)
+    assert [note.text for note in read_notes(tmp_path)] == ['came late', *kept]
+    add_note(tmp_path, 'include', '')
+    add_note(tmp_path, 'note', 'two\nlines,\u2028"quoted"')
+    notes = read_notes(tmp_path)
+    assert [note.text for note in notes] == ['came late', *kept, '', 'two\nlines,\u2028"quoted"']
+    assert why_excluded(notes) is None
+
+
+def test_a_line_that_was_torn_off_before_its_text_is_named(tmp_path):
+    add_note(tmp_path, 'note', 'one\nand two')
+    with (tmp_path / 'notes.csv').open('a') as file:
+        file.write('2026-11-27T21:08:00+0000,excl')
+    add_note(tmp_path, 'include', '')
+    with pytest.raises(ValueError, match=r'notes\.csv is damaged: .*mend line 4, or take it out'):
+        read_notes(tmp_path)
+
+
 @pytest.mark.parametrize(('content', 'said'), [
     ('a,b\n1,2\n', 'is damaged: its columns'), ('at,kind,text\n1,2,3,4\n', 'is damaged: its columns'),
-    ('at,kind,text\nnow,praise,good\n', "line 2: kind is 'praise', expected note")])
+    ('at,kind,text\nnow,note,' + 'long' * 50_000, 'is damaged: its columns'),
+    ('at,kind,text\nnow,praise,good\n', "line 2: kind is 'praise', expected note")],
+    ids=['other columns', 'too many', 'too long', 'unknown kind'])
 def test_damaged_notes_are_named(study, content, said):
     folder, plan = study
     (folder.person(plan.participant(1)) / 'notes.csv').write_text(content)

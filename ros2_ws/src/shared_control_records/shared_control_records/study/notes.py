@@ -15,7 +15,9 @@
 """What the experimenter says of a participant: ``notes.csv``, to which lines are added and in which none is changed."""
 
 import csv
+import io
 import os
+import re
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -23,6 +25,8 @@ from typing import NamedTuple
 NAME = 'notes.csv'
 """In a participant's folder."""
 KINDS = ('note', 'exclude', 'include')
+_BEGINNING = re.compile(rf'[^,"]*,({"|".join(KINDS)}),')
+"""How a note begins."""
 
 
 class Note(NamedTuple):
@@ -51,10 +55,14 @@ def add_note(person: Path, kind: str, text: str) -> None:
     if not text and kind != 'include':
         raise ValueError(f'--{kind} needs words: {"what is to be noted" if kind == "note" else "the reason"}')
     person.mkdir(parents=True, exist_ok=True)
-    with (person / NAME).open('a', newline='', encoding='utf-8') as file:
+    path = person / NAME
+    is_torn = path.exists() and not path.read_bytes().endswith(b'\n')  # the machine stopped, or an editor left it so
+    with path.open('a', newline='', encoding='utf-8') as file:
         lines = csv.writer(file, lineterminator='\n')
         if not file.tell():
             lines.writerow(Note._fields)
+        elif is_torn:
+            file.write('\n')
         lines.writerow(Note(time.strftime('%Y-%m-%dT%H:%M:%S%z'), kind, text))
         file.flush()
         os.fsync(file.fileno())
@@ -68,16 +76,48 @@ def read_notes(person: Path) -> list[Note]:
     """
     path = person / NAME
     try:
-        with path.open(newline='', encoding='utf-8') as file:
-            notes = [Note(**row) for row in csv.DictReader(file)]
+        text = path.read_text(encoding='utf-8', errors='replace')
     except FileNotFoundError:
         return []
-    except (TypeError, ValueError, csv.Error) as error:
-        raise ValueError(f'{path} is damaged: its columns are to be {", ".join(Note._fields)}') from error
-    for line, note in enumerate(notes, start=2):
-        if note.kind not in KINDS:
-            raise ValueError(f'{path}, line {line}: kind is {note.kind!r}, expected {", ".join(KINDS)}')
-    return notes
+    return [_note(path, number, line) for number, line in _lines(text) if number > 1 or not _is_header(line)]
+
+
+def _lines(text: str) -> list[tuple[int, str]]:
+    """The lines of a file of notes with their numbers; a note with several lines in quotes is one of them.
+
+    Quotes that were torn open end where the next note begins: they hide none.
+    """
+    found: list[tuple[int, str]] = []
+    for number, line in enumerate(text.split('\n'), start=1):
+        if found and found[-1][1].count('"') % 2 and not _BEGINNING.match(line):
+            first, before = found.pop()
+            found.append((first, f'{before}\n{line}'))
+        elif line.strip():
+            found.append((number, line))
+    return found
+
+
+def _is_header(line: str) -> bool:
+    return _columns(line) == list(Note._fields)
+
+
+def _columns(line: str) -> list[str]:
+    """What stands in the columns of a line; none when it is no line of a table."""
+    try:
+        return next(csv.reader(io.StringIO(line, newline='')))
+    except csv.Error:
+        return []
+
+
+def _note(path: Path, number: int, line: str) -> Note:
+    columns = _columns(line)
+    if len(columns) != len(Note._fields):
+        raise ValueError(f'{path} is damaged: its columns are to be {", ".join(Note._fields)}; mend line {number}, or '
+                         'take it out')
+    note = Note(*columns)
+    if note.kind not in KINDS:
+        raise ValueError(f'{path}, line {number}: kind is {note.kind!r}, expected {", ".join(KINDS)}')
+    return note
 
 
 def why_excluded(notes: list[Note]) -> str | None:
