@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 import yaml
 from shared_control.robot.model import RobotModel
+from shared_control.robot.possible import PossibleStates
 from shared_control.robot.spec_file import RobotFileError, load_robot, panda
 from shared_control.robot.specs import PANDA
 
@@ -49,6 +50,25 @@ def test_a_urdf_lies_beside_the_file(tmp_path):
     path = tmp_path / 'mine.yaml'
     path.write_text(yaml.safe_dump(yaml.safe_load(PANDA.read_text()) | {'urdf': 'arm.urdf'}))
     assert load_robot(str(path)).urdf == tmp_path / 'arm.urdf'
+
+
+def test_a_state_is_possible_far_beyond_the_limits_of_the_robot():
+    """A fall, a blow, a driver that measures: the arm is still to be brought to rest."""
+    robot = panda()
+    assert PossibleStates(robot).fault(robot.q_max + 50.0, -100.0 * robot.qd_max, 2.5 * robot.torque_max) == ''
+    assert PossibleStates(robot).fault(robot.q_min - 50.0) == ''
+
+
+@pytest.mark.parametrize(('quantity', 'value', 'said'), [
+    (0, -100.0, 'position of panda_joint3 is -100 rad, which no arm has: at most 66 are possible'),
+    (1, 1e160, 'velocity of panda_joint3 is 1e+160 rad/s, which no arm has: at most 2175 are possible'),
+    (2, 1000.0, 'effort of panda_joint3 is 1000 N m, which no arm has: at most 261 are possible'),
+    (1, np.nan, 'velocity of panda_joint3 is nan rad/s, which no arm has: at most 2175 are possible'),
+    (2, -np.inf, 'effort of panda_joint3 is -inf N m, which no arm has: at most 261 are possible')])
+def test_a_state_that_no_arm_can_be_in_is_named(quantity, value, said):
+    state = [panda().home.copy(), np.zeros(7), np.zeros(7)]
+    state[quantity][2] = value
+    assert PossibleStates(panda()).fault(*state) == said
 
 
 @pytest.mark.parametrize('kind', ['continuous', 'floating'])

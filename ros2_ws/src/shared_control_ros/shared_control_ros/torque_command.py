@@ -19,6 +19,8 @@ lockstep needs it: after a stall an answer may come twice, and one taken for tha
 torque from then on a tick late. Effort controllers of robots look at the data alone.
 """
 
+import math
+
 from rclpy.serialization import serialize_message
 from shared_control.contract import answer_label
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension, MultiArrayLayout
@@ -48,6 +50,12 @@ class TorqueBytes:
         """(n,), N m; write the torques here."""
 
     def answer(self, stamp_ns: int) -> bytes:
-        """The message that answers joint states of this stamp."""
+        """The message that answers joint states of this stamp.
+
+        Raises:
+            ValueError: a torque is not finite; no robot is to be sent such a one, whatever it came from.
+        """
+        if not math.isfinite(self.torque.sum()):
+            raise ValueError(f'torques that are not finite: {self.torque}')
         self._bytes[self._label] = answer_label(stamp_ns).encode()
         return bytes(self._bytes)

@@ -23,7 +23,9 @@ from shared_control.robot.spec_file import panda
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.serialized import set_stamp, stamp_of
 from shared_control_ros.stamps import set_ns
+from shared_control_ros.torque_command import TorqueBytes
 from shared_control_ros.wire import WireLayout, read_message
+from std_msgs.msg import Float64MultiArray
 
 
 def test_joints_are_found_by_name():
@@ -35,7 +37,8 @@ def test_joints_are_found_by_name():
 @pytest.mark.parametrize(('message', 'reason'), [
     (JointState(name=list(panda().joints[:6]), position=[0.0] * 6), 'panda_joint7'),
     (JointState(name=list(panda().joints), position=[0.0] * 6), 'panda_joint7'),
-    (JointState(name=list(panda().joints), position=[np.nan] * 7), 'not finite'),
+    (JointState(name=list(panda().joints), position=[0.0, np.nan, *[0.0] * 5]), 'position of panda_joint2 is nan'),
+    (JointState(name=list(panda().joints), position=[*[0.0] * 6, -1e160]), 'position of panda_joint7 is -1e.160 rad'),
 ])
 def test_unusable_joints_are_refused(message, reason):
     with pytest.raises(ValueError, match=reason):
@@ -92,6 +95,16 @@ def test_a_layout_learns_to_overlook_the_padding_of_another_process():
     assert not layout.learn(STATE, renamed + bytes(8)), 'another size is another layout'
     assert not layout.learn(deserialize_message(renamed, JointState), renamed), 'names are no padding'
     assert not layout.fits(renamed)
+
+
+@pytest.mark.parametrize('value', [np.nan, np.inf])
+def test_no_torque_is_sent_that_is_not_finite(value):
+    command = TorqueBytes(7)
+    command.torque[:] = 1.0
+    assert deserialize_message(command.answer(5), Float64MultiArray).data.tolist() == [1.0] * 7
+    command.torque[3] = value
+    with pytest.raises(ValueError, match='not finite'):
+        command.answer(5)
 
 
 def test_bytes_that_are_no_message_are_refused():

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from shared_control.control.computed_torque import ComputedTorqueController, limit_torque
 from shared_control.robot.model import pitch
+from shared_control.robot.possible import BEYOND_LIMITS, TIMES_AS_FAST, TIMES_AS_STRONG, PossibleStates
 from shared_control.robot.spec_file import panda
 from shared_control.tasks.balance import BALANCE
 
@@ -73,6 +74,16 @@ def test_torque_and_its_rate_are_limited():
     np.testing.assert_array_equal(limit_torque(panda(), FAR, previous, 1.0), np.ones(panda().dof))
     np.testing.assert_array_equal(limit_torque(panda(), -FAR, panda().torque_max - 0.5, 1.0), panda().torque_max - 1.5)
     np.testing.assert_array_equal(limit_torque(panda(), FAR, panda().torque_max - 0.5, 1.0), panda().torque_max)
+
+
+@pytest.mark.parametrize('sign', [-1.0, 1.0])
+def test_every_possible_state_has_a_torque_within_the_limits(model, sign):
+    spec = panda()
+    state = (sign * (spec.q_max + BEYOND_LIMITS - 1.0), sign * TIMES_AS_FAST * spec.qd_max,
+             sign * TIMES_AS_STRONG * spec.torque_max)
+    assert PossibleStates(spec).fault(*state) == ''
+    torque = ComputedTorqueController(model, compensate_nonlinear=False).torque(*state, FIVE)
+    assert (np.abs(torque) <= spec.torque_max).all()
 
 
 @pytest.mark.parametrize('gains', panda().gains)

@@ -22,14 +22,14 @@ from shared_control.robot.spec_file import panda
 from torque_ctrl_node.joint_states import JointStateReader
 
 
-def message(names=panda().joints, position=None):
+def message(names=panda().joints, position=None, velocity=0.1, effort=0.2):
     count = len(names)
     position = [float(i) for i in range(count)] if position is None else position
-    return JointState(name=list(names), position=position, velocity=[0.1] * count, effort=[0.2] * count)
+    return JointState(name=list(names), position=position, velocity=[velocity] * count, effort=[effort] * count)
 
 
-def data(*arguments):
-    return serialize_message(message(*arguments))
+def data(*arguments, **values):
+    return serialize_message(message(*arguments, **values))
 
 
 def test_order_follows_the_names_not_the_indices():
@@ -44,10 +44,12 @@ def test_order_follows_the_names_not_the_indices():
 @pytest.mark.parametrize(('bad', 'named'), [
     (data(panda().joints[:6]), 'panda_joint7'),
     (data(panda().joints, [0.0] * 5), 'position has 5 values'),
-    (data(panda().joints, [0.0] * 6 + [float('nan')]), 'not finite'),
+    (data(panda().joints, [0.0] * 6 + [float('nan')]), 'position of panda_joint7 is nan'),
+    (data(velocity=1e160), 'velocity of panda_joint1 is 1e.160 rad/s'),
+    (data(effort=1000.0), 'effort of panda_joint1 is 1000 N m'),
     (data()[:60], 'no JointState'),
     (b'', 'no JointState'),
-], ids=['a joint missing', 'positions missing', 'not finite', 'cut', 'empty'])
+], ids=['a joint missing', 'positions missing', 'not finite', 'too fast', 'too strong', 'cut', 'empty'])
 def test_what_is_missing_is_named(bad, named):
     reader = JointStateReader(panda())
     for _ in range(2):

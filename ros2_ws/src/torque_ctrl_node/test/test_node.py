@@ -193,11 +193,16 @@ class TestRunningController:
         np.testing.assert_array_equal(robot.tick(), expected(0.5))
         node.wait_for_log('/agent/target_wrench: torque.x is 2.0 and counts nothing: the task shares torque.y')
 
-    def test_broken_joint_states_get_no_answer(self, node, robot):
+    @pytest.mark.parametrize(('broken', 'said'), [
+        ({'position': [0.0] * 3}, 'position has 3 values'),
+        ({'effort': [0.0, 0.0, 1000.0, 0.0, 0.0, 0.0, 0.0]}, 'effort of panda_joint3 is 1000 N m'),
+    ])
+    def test_broken_joint_states_get_no_answer(self, node, robot, broken, said):
+        time.sleep(1.0)  # an error is said once a second
         answers = len(robot.commands)
         robot.now_ns += 1_000_000
-        robot.states.publish(robot.state(position=[0.0] * 3))
-        node.wait_for_log('position has 3 values')
+        robot.states.publish(robot.state(**broken))
+        node.wait_for_log(f'dropped a message on /joint_states: {said}')
         assert len(robot.commands) == answers
         robot.tick()
 

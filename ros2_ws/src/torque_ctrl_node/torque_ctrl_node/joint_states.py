@@ -14,10 +14,9 @@
 
 """Joint states as arrays in the controller's order."""
 
-import math
-
 import numpy as np
 from sensor_msgs.msg import JointState
+from shared_control.robot.possible import PossibleStates
 from shared_control.robot.spec import RobotSpec
 from shared_control_ros.wire import WireLayout, read_message
 
@@ -32,21 +31,22 @@ class JointStateReader:
 
     def __init__(self, spec: RobotSpec) -> None:
         self._joints = list(spec.joints)
+        self._possible = PossibleStates(spec)
         self._layout: WireLayout | None = None
 
     def read(self, data: bytes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions (rad), velocities (rad/s) and efforts (N m), each (n,).
 
         Raises:
-            ValueError: it is no JointState, a joint or a value is missing, or a value is not finite; the message says
-                which.
+            ValueError: it is no JointState, a joint or a value is missing, or a value is one that no arm has; the
+                message says which.
         """
         if self._layout is not None and self._layout.fits(data):
             q, qd, effort = (view.copy() for view in self._layout.views(data))
         else:
             q, qd, effort = self._read_any(data)
-        if not math.isfinite(q.sum() + qd.sum() + effort.sum()):
-            raise ValueError(f'values that are not finite: position {q}, velocity {qd}, effort {effort}')
+        if fault := self._possible.fault(q, qd, effort):
+            raise ValueError(fault)
         return q, qd, effort
 
     def _read_any(self, data: bytes) -> tuple[np.ndarray, ...]:

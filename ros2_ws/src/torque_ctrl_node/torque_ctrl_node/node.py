@@ -171,11 +171,9 @@ class TorqueCtrlNode:
         human, agent = self._human.moment(now_ns), self._agent.moment(now_ns)
         agent, human = self._sharing.parts(agent, human)
         applied = sum_moments(agent, human, self._moment_limit)
-        self._command.torque[:] = self._controller.torque(q, qd, effort, applied)
-        self._command_publisher.publish(self._command.answer(now_ns))
-        self._answered_ns = now_ns
-        self._diagnostics.tick()
-        self._applied.publish(now_ns, applied, human, agent, self._ticks % TICKS_PER_POLL == 0)
+        if self._send(self._controller.torque(q, qd, effort, applied), now_ns):
+            self._diagnostics.tick()
+            self._applied.publish(now_ns, applied, human, agent, self._ticks % TICKS_PER_POLL == 0)
 
     def _stand_by(self, now_ns: int, q: np.ndarray, qd: np.ndarray, effort: np.ndarray) -> None:
         """Disabled: bring the arm to rest if it has just been disabled, else send nothing."""
@@ -184,9 +182,19 @@ class TorqueCtrlNode:
             source.update(now_ns)  # nobody enables what was sent before the robot's time ran back
         if self._safety.stopping_ticks:
             self._safety.stopping_ticks -= now_ns != self._answered_ns  # a repeated tick is none
-            self._command.torque[:] = self._controller.damping_torque(q, qd, effort)
+            self._send(self._controller.damping_torque(q, qd, effort), now_ns)
+
+    def _send(self, torque: np.ndarray, now_ns: int) -> bool:
+        """Answer joint states of a stamp, unless the torque cannot be sent; whether it was."""
+        self._command.torque[:] = torque
+        try:
             self._command_publisher.publish(self._command.answer(now_ns))
-            self._answered_ns = now_ns
+        except ValueError as error:
+            self.node.get_logger().error(
+                f'nothing sent on {self._command_publisher.topic_name}: {error}', throttle_duration_sec=1.0)
+            return False
+        self._answered_ns = now_ns
+        return True
 
     def _wait_for_sources(self, now_ns: int, stop: Stop) -> None:
         for source in self._awaited:
