@@ -123,8 +123,13 @@ class TestLockstepWithController:
         for _ in range(50):
             observer.spin_for(0.05)
             if np.abs(np.array(states[-1].position) - still).max() < 0.005:
-                return
-        pytest.fail('the push did not end')
+                break
+        else:
+            pytest.fail('the push did not end')
+        push.wrench.force.z = 1e160
+        publisher.publish(push)
+        observer.spin_for(0.3)
+        assert np.abs(np.array(states[-1].position) - still).max() < 0.005, 'pushed as nobody can'
 
     def test_reports_its_pace(self, observer, states):
         reports = observer.listen(contract.DIAGNOSTICS)

@@ -16,6 +16,9 @@
 
 from dataclasses import dataclass
 
+BALL_WITHIN = 1e9
+"""No ball is further off, m, or faster, m/s: in a world without a floor one falls for four hours until then."""
+
 
 @dataclass(frozen=True)
 class Box:

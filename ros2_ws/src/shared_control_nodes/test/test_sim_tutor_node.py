@@ -88,6 +88,7 @@ def test_presses_keys_only_while_the_robot_is_taught(scene):
     scene.enter('teach')
     assert scene.show(0.15, 1.5)[0] is Key.LEFT
     scene.show(float('nan'), 0.1)
+    scene.show(1e160, 0.1)
     scene.enter('teach', episode=2)
     scene.moment.release()
     assert scene.show(-0.15, 1.5)[0] is Key.RIGHT

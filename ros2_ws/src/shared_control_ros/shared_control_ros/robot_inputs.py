@@ -26,6 +26,7 @@ from . import contract
 from .fast_loop import Polled
 from .torque_command import command_layout
 from .wire import read_message
+from .wrenches import LARGEST
 
 ANSWER_LATE_NS = 1_000_000_000
 """A robot that runs freely gets its answers some ticks late; those to older joint states than this are not for it."""
@@ -117,10 +118,11 @@ class PushInput:
                 self._until = 0
             return
         force = np.array([message.wrench.force.x, message.wrench.force.y, message.wrench.force.z])
-        if message.header.frame_id != self._world.spec.base_frame or not math.isfinite(force.sum()):
+        is_possible = (np.abs(force) <= LARGEST).all()  # nan is not
+        if message.header.frame_id != self._world.spec.base_frame or not is_possible:
             self._node.get_logger().error(
                 f'dropped a message on {self._input.topic_name}: frame_id {message.header.frame_id!r} (expected '
-                f'{self._world.spec.base_frame!r}), force {force}', throttle_duration_sec=1.0)
+                f'{self._world.spec.base_frame!r}), force {force} (at most {LARGEST:.0f} N)', throttle_duration_sec=1.0)
             return
         self._world.push(force)
         self._until = tick + self._ticks

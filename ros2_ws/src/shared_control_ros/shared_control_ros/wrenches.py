@@ -22,8 +22,8 @@ from shared_control.wrench import COMPONENTS
 from .contract import BASE_FRAME
 
 LARGEST = 1000.0
-"""N m. Nobody means more, ten times what a full action is worth in the thesis; the sum is limited to far less, but each
-part is recorded and learned from."""
+"""N m, and N of a push. Nobody means more, ten times what a full action is worth in the thesis; the sum is limited to
+far less, but each part is recorded and learned from."""
 
 
 def base_wrench(frame: str = BASE_FRAME) -> WrenchStamped:

@@ -17,9 +17,12 @@
 import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
+from nav_msgs.msg import Odometry
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import JointState
 from shared_control.robot.spec_file import panda
+from shared_control_ros.ball_states import ball_state
+from shared_control_ros.contract import BASE_FRAME
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.serialized import set_stamp, stamp_of
 from shared_control_ros.stamps import set_ns
@@ -43,6 +46,28 @@ def test_joints_are_found_by_name():
 def test_unusable_joints_are_refused(message, reason):
     with pytest.raises(ValueError, match=reason):
         joint_positions(message, panda())
+
+
+def ball(frame=BASE_FRAME, x=0.0, speed=0.0):
+    message = Odometry()
+    message.header.frame_id = frame
+    message.pose.pose.position.x, message.twist.twist.linear.z = x, speed
+    return message
+
+
+def test_a_ball_may_fall_for_long():
+    assert ball_state(ball(x=-0.5, speed=-1e5)) == ((-0.5, 0.0, 0.0), (0.0, 0.0, -1e5))
+
+
+@pytest.mark.parametrize(('message', 'reason'), [
+    (ball(frame='world'), "frame_id is 'world'"),
+    (ball(x=np.nan), r'position\.x is nan'),
+    (ball(x=-1e160), r'position\.x is -1e\+160, which no ball has: at most 1e\+09 are possible'),
+    (ball(speed=np.inf), r'velocity\.z is inf'),
+])
+def test_a_ball_that_cannot_be_is_refused(message, reason):
+    with pytest.raises(ValueError, match=reason):
+        ball_state(message)
 
 
 @pytest.mark.parametrize('kind', [WrenchStamped, JointState])

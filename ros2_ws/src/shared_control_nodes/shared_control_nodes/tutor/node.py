@@ -18,8 +18,6 @@ Takes /ball, /joint_states_throttle, /human/target_wrench, /training/phase and /
 person: it sees late and inexactly, and presses keys. In any phase but ``teach`` it keeps its hands off.
 """
 
-import math
-
 import numpy as np
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
@@ -28,6 +26,7 @@ from shared_control.rates import POLICY_PERIOD
 from shared_control.seeds import episode_seed
 from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
 from shared_control_ros import contract
+from shared_control_ros.ball_states import ball_state
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
@@ -100,12 +99,12 @@ class SimTutorNode:
                 self._complain(self._human, str(error))
         if self._lesson.phase != 'teach' or self._q is None:
             return
-        position, velocity = ball.pose.pose.position, ball.twist.twist.linear
-        if not math.isfinite(position.x + position.y + position.z + velocity.x + velocity.y):
-            self._complain(self._balls, f'position {position}, velocity {velocity}')
+        try:
+            position, velocity = ball_state(ball, self._robot.base_frame)
+        except ValueError as error:
+            self._complain(self._balls, str(error))
             return
-        picture = self._tutor.look(PlantState(
-            self._q, (position.x, position.y, position.z), (velocity.x, velocity.y, velocity.z), *[self._held] * 3))
+        picture = self._tutor.look(PlantState(self._q, position, velocity, *[self._held] * 3))
         key = self._tutor.key((self._stamp_ns - self._started_ns) * 1e-9, picture, self._held)
         if key is not None:
             self._keys.press(key, self._stamp_ns)

@@ -32,6 +32,7 @@ from shared_control.robot.spec_file import panda
 from shared_control.robot.tray import carrying
 from shared_control.scene import Ball
 from shared_control_ros import contract
+from shared_control_ros.ball_states import ball_state
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
@@ -111,11 +112,14 @@ class RobotViewNode:
         joints = self._joints.take()
         if joints is None:
             return
+        source = self._joints
         try:
             q = joint_positions(joints, self._model.spec)
+            source = self._balls
+            ball_state(ball, self._model.spec.base_frame)
         except ValueError as error:
             self.node.get_logger().error(
-                f'dropped a message on {self._joints.topic_name}: {error}', throttle_duration_sec=1.0)
+                f'dropped a message on {source.topic_name}: {error}', throttle_duration_sec=1.0)
             return
         if self._tf is not None:
             self._tf.publish(TFMessage(transforms=self._transforms(ball, q)))

@@ -29,6 +29,7 @@ from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict, split_episode_key
 
 from .. import contract
+from ..ball_states import ball_state
 from ..fast_loop import Polled
 from ..joints import joint_positions
 from ..stamps import to_ns
@@ -164,12 +165,12 @@ class Observer:
 
     def _read_ball(self, ball: Odometry, scene: Scene) -> None:
         assert self._tray is not None
-        position = ball.pose.pose.position
-        in_base = np.array([position.x, position.y, position.z])
-        if ball.header.frame_id != self._model.spec.base_frame or not np.isfinite(in_base).all():
-            self._drop(self._ball, f'frame_id {ball.header.frame_id!r} (expected {self._model.spec.base_frame!r}), '
-                                   f'position {in_base}')
+        try:
+            position, _ = ball_state(ball, self._model.spec.base_frame)
+        except ValueError as error:
+            self._drop(self._ball, str(error))
             return
+        in_base = np.array(position)
         origin, rotation = self._tray
         scene.ball, scene.ball_on_tray = in_base, rotation.T @ (in_base - origin)
 
