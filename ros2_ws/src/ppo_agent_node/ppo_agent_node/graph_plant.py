@@ -14,7 +14,6 @@
 
 """The plant of an environment, reached through the topics of the graph."""
 
-import math
 import time
 from collections.abc import Callable
 
@@ -28,6 +27,7 @@ from shared_control.rates import POLICY_PERIOD
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
+from shared_control_ros.ball_states import ball_state
 from shared_control_ros.fast_loop import Background, Polled
 from shared_control_ros.joints import joint_positions
 from shared_control_ros.serialized import stamp_of
@@ -160,14 +160,13 @@ class GraphPlant:
         self._last_number = number
 
     def _is_usable(self, ball: Odometry) -> bool:
-        position, velocity = ball.pose.pose.position, ball.twist.twist.linear
-        if ball.header.frame_id == self.spec.base_frame and math.isfinite(
-                position.x + position.y + position.z + velocity.x + velocity.y + velocity.z):
-            return True
-        self._node.get_logger().error(
-            f'dropped a message on {self._balls.topic_name}: frame_id {ball.header.frame_id!r} (expected '
-            f'{self.spec.base_frame!r}), position {position}, velocity {velocity}', throttle_duration_sec=1.0)
-        return False
+        try:
+            ball_state(ball, self.spec.base_frame)
+        except ValueError as error:
+            self._node.get_logger().error(
+                f'dropped a message on {self._balls.topic_name}: {error}', throttle_duration_sec=1.0)
+            return False
+        return True
 
     def _read(self, ball: Odometry) -> PlantState:
         """The state at the tick of ``ball``, with the moments that counted just before it."""
