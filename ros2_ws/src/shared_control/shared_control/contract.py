@@ -138,8 +138,8 @@ VERDICT = Topic(
     latched=True)
 WAITING = Topic(
     'session/waiting', 'std_msgs/msg/String', 1, 'session', 'screens', 'on change, then 1 Hz',
-    'what the session waits for and since when; in a second line the newest warning about it; empty: nothing. '
-    'Not in bags',
+    'what the session waits for and since when; in a second line what holds it up (an emergency stop, and what ends '
+    'it) or the newest warning about it; empty: nothing. Not in bags',
     latched=True, in_bag=False)
 
 TRAINING = (EPISODE, PHASE, TIME_LEFT, EPISODE_RETURN, HUMAN_SHARE, SUCCESS, RESTS_LEFT)

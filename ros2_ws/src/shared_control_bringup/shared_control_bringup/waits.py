@@ -14,6 +14,7 @@
 
 """What a session waits for, since when and why: printed, logged, and published for the screen and the page."""
 
+import math
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -60,7 +61,7 @@ class Wait:
 
     what: str
     nodes: tuple[str, ...]
-    """Whose warnings may tell why."""
+    """Whose reports and warnings may tell why."""
     starts: bool = False
     """Whether it is for nodes to start."""
 
@@ -131,7 +132,7 @@ class Waits:
         text = ''
         if wait is not None:
             what = f'for {wait.what} since {self._clock} ({now - self._since:.0f} s)'
-            why = self._newest_warning(wait.nodes)
+            why = self._why(wait.nodes, now)
             text = f'{what}\n{why}' if why else what
             if now >= self._next_line:
                 self._say(f'waiting {text}'.replace('\n', '; '))
@@ -177,6 +178,15 @@ class Waits:
                       'stood')
             node.kill()
 
+    def _why(self, names: tuple[str, ...], now: float) -> str:
+        """What holds one of these nodes until somebody acts, else the newest warning in their logs.
+
+        A controller logs its emergency stop once, and the simulator that waits for it warns again and again. Whatever
+        is waited for, without a controller time stands still.
+        """
+        held_up = '' if self._graph is None else self._graph.held_up((*names, 'torque_ctrl_node'), now)
+        return held_up or self._newest_warning(names)
+
     def _newest_warning(self, names: tuple[str, ...]) -> str:
         found = [(*warning, node.name) for node in self._nodes
                  if node.name in names and (warning := node.newest_warning())]
@@ -212,6 +222,8 @@ class _Graph:
         self._message = String()
         self.reported: dict[str, float] = {}
         """When each node reported last on /diagnostics, s of the monotonic clock."""
+        self._newest: dict[str, DiagnosticStatus] = {}
+        """What it reported then."""
         self._statuses_publisher = self._node.create_publisher(
             contract.DIAGNOSTICS.msg_type, contract.DIAGNOSTICS.name, contract.DIAGNOSTICS.qos)
         self._status = DiagnosticStatus(name=self._node.get_fully_qualified_name(), level=DiagnosticStatus.OK)
@@ -239,12 +251,26 @@ class _Graph:
     def _hear(self, message: Any, now: float) -> None:
         """Simulators report their ticks once a second, and whether they are paused."""
         for status in message.status:
-            self.reported[status.name.rpartition('/')[2]] = now
+            name = status.name.rpartition('/')[2]
+            self.reported[name], self._newest[name] = now, status
             values = {value.key: value.value for value in status.values}
             if 'ticks' in values:
                 self._paused = values.get('paused') == 'True'
                 if values['ticks'] != self._ticks:
                     self._ticks, self._ticked = values['ticks'], now
+
+    def held_up(self, names: tuple[str, ...], now: float) -> str:
+        """Which of these nodes reports an error or waits to be enabled, and what it says to do; empty: none."""
+        from diagnostic_msgs.msg import DiagnosticStatus
+        for name in names:
+            if now - self.reported.get(name, -math.inf) > STANDSTILL:
+                continue
+            status = self._newest[name]
+            values = {value.key: value.value for value in status.values}
+            is_disabled = values.get('enabled') == 'False' and values.get('enables_itself') != 'True'
+            if status.level == DiagnosticStatus.ERROR or is_disabled:
+                return f'{name}: {status.message}'
+        return ''
 
     def publish(self, text: str) -> None:
         """What the session waits for, as /session/waiting has it."""

@@ -20,7 +20,7 @@ import sys
 import time
 
 import pytest
-from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from shared_control_bringup import parameters
 from shared_control_bringup import waits as waits_module
 from shared_control_bringup.node_process import NodeProcess
@@ -53,7 +53,7 @@ def test_what_goes_on_is_no_wait(seen):
     assert wait_of(seen) is None
 
 
-def test_a_simulator_without_a_controller_is_said_with_its_newest_warning(domain_id, observer, tmp_path):
+def test_a_simulator_that_waits_is_said_with_its_warning_and_a_stopped_controller_first(domain_id, observer, tmp_path):
     file = tmp_path / 'parameters.yaml'
     parameters.save(parameters.load(), file)
     simulator = NodeProcess('panda_sim_node', file, tmp_path / 'panda_sim_node.log')
@@ -61,6 +61,7 @@ def test_a_simulator_without_a_controller_is_said_with_its_newest_warning(domain
     published = observer.listen(contract.WAITING)
     waits = Waits([simulator], said.append)
     phase = observer.node.create_publisher(String, contract.PHASE.name, contract.PHASE.qos)
+    reports = observer.publisher(contract.DIAGNOSTICS)
     simulator.start()
     waits.open()
     try:
@@ -74,6 +75,15 @@ def test_a_simulator_without_a_controller_is_said_with_its_newest_warning(domain
         assert what.startswith('for a tick of the simulation since ')
         assert why.startswith('panda_sim_node: no torque on /effort_controller/commands')
         assert any(line.startswith('waiting for a tick of the simulation since') for line in said)
+        for status in (DiagnosticStatus(level=DiagnosticStatus.ERROR, message='emergency stop: reset it'),
+                       DiagnosticStatus(level=DiagnosticStatus.WARN, message='disabled: enable it',
+                                        values=[KeyValue(key='enabled', value='False')])):
+            status.name = '/torque_ctrl_node'
+            while not published[-1].data.endswith(f'\ntorque_ctrl_node: {status.message}'):
+                assert time.monotonic() < deadline, said
+                reports.publish(DiagnosticArray(status=[status]))
+                waits.poll()
+                observer.spin_for(0.1)
         phase.publish(String(data='done'))
         while published[-1].data:
             assert time.monotonic() < deadline, said

@@ -323,8 +323,8 @@ class TestSafety:
                 publisher.publish(Bool(data=True))
                 publisher.publish(Bool(data=False))
             self.answers(robot_at_rest)
-            return any(r.status[0].level == DiagnosticStatus.ERROR and 'emergency stop' in r.status[0].message
-                       for r in reports)
+            return any(r.status[0].level == DiagnosticStatus.ERROR and r.status[0].message.startswith(
+                '/effort_controller/commands: emergency stop: /controller/reset_emergency_stop, then') for r in reports)
 
         robot_at_rest.observer.spin(stopped)
         if how != 'service':

@@ -206,14 +206,15 @@ class TorqueCtrlNode:
     def _report(self) -> None:
         self._watchdog.feed()
         problems = {}
+        if problem := self._safety.problem:  # first: a screen may cut the rest off
+            problems[self._command_publisher.topic_name] = problem
         for source in (self._human, self._agent):
             if problem := source.problem(self._now_ns):
                 problems[source.topic_name] = problem
-        if problem := self._safety.problem:
-            problems[self._command_publisher.topic_name] = problem
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if self._safety.is_stopped else None, enabled=self._safety.enabled,
-            emergency_stop=self._safety.is_stopped, applied=self._applied.applied, task=self._task_name)
+            enables_itself=self._safety.enables_itself, emergency_stop=self._safety.is_stopped,
+            applied=self._applied.applied, task=self._task_name)
 
     def close(self) -> None:
         """Bring an arm that is moved to rest: without torques it would go on by its momentum until it brakes."""

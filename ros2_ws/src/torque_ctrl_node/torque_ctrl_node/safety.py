@@ -66,7 +66,8 @@ class Safety:
         if not self.is_stopped:
             self._record.forget()
         self._beside_a_simulator = enables_itself
-        self._enables_itself = enables_itself and not self.is_stopped
+        self.enables_itself = enables_itself and not self.is_stopped
+        """Whether it will be enabled without being asked."""
         self._enable_name = node.resolve_service_name(contract.ENABLE_SERVICE)
         self._reset_name = node.resolve_service_name(contract.RESET_EMERGENCY_STOP_SERVICE)
         # However it is published: drivers of buttons may offer best effort, which a reliable subscription never gets.
@@ -83,13 +84,15 @@ class Safety:
         """Why no torques are sent; empty when they are."""
         if self.is_stopped:
             return f'emergency stop: {self._reset_name}, then {self._enable_name}, to go on'
+        if self.enables_itself:
+            return f'not enabled yet: {self._obstacle()}'
         return '' if self.enabled else f'disabled: {self._enable_name} to go on'
 
     def see(self, q: np.ndarray) -> None:
         """Joint positions while disabled, (n,), rad: they decide whether the controller may be enabled."""
         self._q = q
         self._q_seen = time.monotonic()
-        if self._enables_itself:
+        if self.enables_itself:
             if obstacle := self._obstacle():
                 self._node.get_logger().warning(f'not enabled yet: {obstacle}', throttle_duration_sec=5.0)
             else:
@@ -118,7 +121,7 @@ class Safety:
 
     def end_torques(self) -> None:
         """Disable; the arm is to be brought to rest if it was moved."""
-        self._enables_itself = False
+        self.enables_itself = False
         if self.enabled:
             self.enabled = False
             self.stopping_ticks = STOPPING_TICKS
@@ -131,7 +134,7 @@ class Safety:
 
     def _enable(self) -> None:
         self.enabled = True
-        self._enables_itself = False
+        self.enables_itself = False
         self.stopping_ticks = 0
 
     def _obstacle(self) -> str:
