@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 from importlib.metadata import entry_points
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -54,22 +55,26 @@ def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_p
     assert NODES.keys() == allowed.keys() - {'operator', 'session'}, 'add new nodes to shared_control_ros.interfaces'
     NODES['session_recorder_node'] = {'output': tmp_path / 'bag'}
     NODES['panda_bridge_node'] = {'hostname': 'here'}
-    running = []
-    for name, parameters in NODES.items():
-        # Three of them are robots: with its locks in a folder of its own, none refuses to be the second of its domain.
-        (tmp_path / name).mkdir()
-        monkeypatch.setenv('TMPDIR', str(tmp_path / name))
-        running.append(start_node(name, **parameters))
-    for node in running:
+    robots = ('panda_sim_node', 'mock_panda_node', 'panda_bridge_node')
+    running = {name: start_node(name, **parameters) for name, parameters in NODES.items() if name not in robots[1:]}
+    for node in running.values():
         node.wait_for_log('ready', 60.0)
     waits = Waits([], print)  # of a session
     waits.open()
+    check(observer, {name: rules for name, rules in allowed.items() if name not in ('operator', *robots[1:])})
+    for before, name in pairwise(robots):  # a domain has one at a time
+        running[before].stop()
+        running[name] = start_node(name, **NODES[name])
+        check(observer, {name: allowed[name]})
+    waits.close()
+
+
+def check(observer, allowed):
+    """What these nodes are seen to do."""
     node = observer.node
-    observer.spin(lambda: {'session', *NODES} <= set(node.get_node_names()), 120.0)
+    observer.spin(lambda: set(allowed) <= set(node.get_node_names()), 120.0)
     observer.spin_for(1.0)  # the endpoints are told after the names
     for name, rules in allowed.items():
-        if name == 'operator':
-            continue
         for what, found in (('publish', node.get_publisher_names_and_types_by_node),
                             ('subscribe', node.get_subscriber_names_and_types_by_node),
                             ('reply', node.get_service_names_and_types_by_node),
@@ -79,4 +84,3 @@ def test_every_node_is_allowed_what_it_does(allowed, start_node, observer, tmp_p
             assert done or what not in ('publish', 'reply'), f'{name} was not looked at'
             for entry, types in found(name, '/'):
                 assert types == [TYPES.get(entry, types[0])], f'{name}: {entry} is not of the type of the contract'
-    waits.close()

@@ -65,14 +65,14 @@ def test_beside_another_robot_it_is_refused_and_the_other_beside_it(with_stand_i
     simulator.wait_for_log('ready')
     refused = start_node('panda_bridge_node', hostname='here')
     assert refused.process.wait(60) == 2
-    assert f'/panda_sim_node (process {simulator.process.pid}) is the robot in ROS domain' in refused.log()
+    assert f'process {simulator.process.pid} (python -m panda_sim_node) is the robot in ROS domain' in refused.log()
     assert 'Traceback' not in refused.log()
     assert simulator.stop() == 0
     bridge = start_node('panda_bridge_node', hostname='here')
     bridge.wait_for_log('ready')
     refused = start_node('panda_sim_node')
     assert refused.process.wait(60) == 2
-    assert f'/panda_bridge_node (process {bridge.process.pid}) is the robot in ROS domain' in refused.log()
+    assert f'process {bridge.process.pid} (python -m shared_control_nodes.bridge) is the robot in' in refused.log()
 
 
 @pytest.mark.skipif(importlib.util.find_spec('panda_py') is None, reason='pip install panda-python==1.1.1')

@@ -14,63 +14,66 @@
 
 """One robot, controller and learner in a ROS domain and namespace: two would disturb each other's every tick."""
 
-import os
-import tempfile
-from contextlib import suppress
+import errno
+import socket
+import struct
+from hashlib import sha256
 from pathlib import Path
-from typing import IO
 
 from rclpy.node import Node
-from shared_control.files import lock
+from shared_control.printable import cut, escaped
 
 from .parameters import ParameterError
 
+_CREDENTIALS = struct.Struct('3i')
+"""Process, user and group at the other end of a socket (unix(7), SO_PEERCRED)."""
 
-def claim(node: Node, role: str) -> IO[bytes]:
-    """Claim a role of the graph for a node, until the file is closed or the process ends.
 
-    Other processes of this machine are meant; what is left of one that was killed is no hindrance.
+def claim(node: Node, role: str) -> socket.socket:
+    """Claim a role of the graph for a node, until the socket is closed or the process ends.
+
+    A role is the name of a socket, not a file: names are the kernel's, one list for all that share a network, as those
+    do that hear each other on this machine. A file's place depends on the shell (TMPDIR) and on the container; it may
+    be another user's, on a read-only disk, or cleaned away under a node that runs. Nothing is left of a node that was
+    killed.
 
     Args:
         node: that has the role.
         role: ``robot``, ``controller`` or ``learner``.
 
     Returns:
-        The file, to be kept open.
+        The socket, to be kept open.
 
     Raises:
-        ParameterError: another process has the role, which the message names, or the file is another user's.
+        ParameterError: another process has the role, which the message names.
     """
     domain, namespace = node.context.get_domain_id(), node.get_namespace()
-    name = f'shared_control_{role}_domain_{domain}{namespace.rstrip("/").replace("/", "__")}.lock'
-    path = Path(tempfile.gettempdir()) / name
-    file = _open(path)
+    # The leading zero makes it a name without a file; a namespace may be longer than such a name.
+    name = b'\0shared_control_' + sha256(f'{role} {domain} {namespace}'.encode()).hexdigest().encode()
+    claimed = socket.socket(socket.AF_UNIX)
     try:
-        lock(file)
-    except BlockingIOError:
-        file.seek(0)
-        other = file.read(200).decode(errors='replace') or 'another process'
-        file.close()
+        claimed.bind(name)
+        claimed.listen()  # for _holder
+    except OSError as error:
+        claimed.close()
+        if error.errno != errno.EADDRINUSE:
+            raise
         raise ParameterError(
-            f'{other} is the {role} in ROS domain {domain}, namespace {namespace} already: end it, or set '
+            f'{_holder(name)} is the {role} in ROS domain {domain}, namespace {namespace} already: end it, or set '
             'ROS_DOMAIN_ID to another number') from None
-    if file.writable():
-        file.truncate(0)
-        file.write(f'{node.get_fully_qualified_name()} (process {os.getpid()})'.encode())
-        file.flush()
-    return file
+    return claimed
 
 
-def _open(path: Path) -> IO[bytes]:
-    """The file, to be read by every user, whatever the umask; to be written by the one whose it is."""
-    try:
-        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644), 'r+b')
-    except PermissionError:  # another user has run one before
+def _holder(name: bytes) -> str:
+    """Which process has the name, as far as that is to be seen from here."""
+    with socket.socket(socket.AF_UNIX) as asking:
+        asking.setblocking(False)  # nobody accepts: many who ask would fill the queue
         try:
-            return path.open('rb')
-        except PermissionError:
-            raise ParameterError(f'{path} is of another user, and not to be read: have it removed, or set '
-                                 'ROS_DOMAIN_ID to another number') from None
-    with suppress(PermissionError):
-        os.fchmod(file.fileno(), 0o644)
-    return file
+            asking.connect(name)
+            process, _, _ = _CREDENTIALS.unpack(
+                asking.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size))
+            command = Path(f'/proc/{process}/cmdline').read_bytes()
+        except OSError:  # it is just beginning or ending, or in another container
+            return 'another process'
+    words = command.partition(b'--ros-args')[0].decode(errors='replace').split('\0')
+    return escaped(f'process {process} ({cut(" ".join(Path(word).name for word in words).strip(), 80)})')

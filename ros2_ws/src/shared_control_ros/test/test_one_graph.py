@@ -15,9 +15,9 @@
 """A second robot, controller or learner is refused by name."""
 
 import os
+import re
 import signal
 import tempfile
-from pathlib import Path
 
 import pytest
 from rclpy.context import Context
@@ -34,7 +34,8 @@ def test_a_second_one_is_refused_and_what_was_killed_is_no_hindrance(start_node,
     there.wait_for_log('ready')
     refused = start_node(second)
     assert refused.process.wait(60) == 2
-    assert f'/{first} (process {there.process.pid}) is the {role} in ROS domain' in refused.log()
+    named = re.compile(rf'process {there.process.pid} \(\S+ .*{first}\S*\) is the {role} in ROS domain')
+    assert named.search(refused.log()), refused.log()
     assert 'ROS_DOMAIN_ID' in refused.log() and 'Traceback' not in refused.log()
     there.stop(signal.SIGKILL)
     start_node(second).wait_for_log('ready')
@@ -50,30 +51,31 @@ def node(domain_id):
     context.shutdown()
 
 
-@pytest.fixture
-def everybodys_folder(monkeypatch):
-    """For temporary files; pytest's own is its user's alone."""
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder).chmod(0o755)
-        monkeypatch.setattr(tempfile, 'tempdir', folder)
-        yield Path(folder)
+def test_a_role_is_one_in_all_shells(node, monkeypatch, tmp_path):
+    with claim(node, 'robot'):
+        monkeypatch.setenv('TMPDIR', str(tmp_path))
+        monkeypatch.setattr(tempfile, 'tempdir', None)
+        with pytest.raises(ParameterError, match=rf'process {os.getpid()} \(.+\) is the robot in ROS domain'):
+            claim(node, 'robot')
+        claim(node, 'controller').close()
+    claim(node, 'robot').close()
+
+
+def test_all_who_ask_are_refused_however_many(node):
+    with claim(node, 'robot'):
+        for _ in range(300):
+            with pytest.raises(ParameterError, match='is the robot in ROS domain'):
+                claim(node, 'robot')
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason='root alone can become another user')
-def test_another_user_is_no_hindrance_but_where_the_file_cannot_be_read(node, everybodys_folder):
-    before = os.umask(0o077)
-    claim(node, 'robot').close()
-    os.umask(before)
-    (file,) = everybodys_folder.iterdir()
-    os.seteuid(65534)
-    try:
-        claim(node, 'robot').close()
-    finally:
-        os.seteuid(0)
-    file.chmod(0o600)
-    os.seteuid(65534)
-    try:
-        with pytest.raises(ParameterError, match=f'{file} is of another user'):
-            claim(node, 'robot')
-    finally:
-        os.seteuid(0)
+def test_a_role_is_one_for_all_users(node):
+    with claim(node, 'robot'):
+        os.seteuid(65534)
+        try:
+            with pytest.raises(ParameterError, match='is the robot in ROS domain'):
+                claim(node, 'robot')
+            claim(node, 'learner').close()
+        finally:
+            os.seteuid(0)
+    claim(node, 'learner').close()

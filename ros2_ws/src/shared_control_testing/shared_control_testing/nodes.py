@@ -50,7 +50,8 @@ DOMAINS = range(1, 100)
 def free_domain() -> Iterator[int]:
     """A ROS domain that no other test on this machine uses at the moment, for this process and those it starts."""
     for candidate in DOMAINS:
-        lock = (Path(tempfile.gettempdir()) / f'shared_control_domain_{candidate}.lock').open('w')
+        # Not in TMPDIR: the nodes of two runs of the tests would meet, whatever each calls its temporary folder.
+        lock = (Path('/tmp') / f'shared_control_domain_{candidate}.lock').open('w')
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

@@ -16,6 +16,7 @@
 
 import os
 import signal
+import tempfile
 import time
 
 import numpy as np
@@ -167,6 +168,17 @@ def test_a_controller_that_leaves_brings_the_arm_to_rest(start_node, robot):
     last = [np.array(command.data) for command in robot.commands[count:]][-100:]
     assert len(last) == 100 and node.process.returncode == 0
     assert all(torque[0] < 0.0 for torque in last), 'against the motion; the first joint carries no weight'
+
+
+def test_an_emergency_stop_without_a_home_is_found_from_any_shell(tmp_path, monkeypatch):
+    (tmp_path / 'home').write_text('a file')
+    (tmp_path / 'shell').mkdir()
+    monkeypatch.setenv('ROS_HOME', str(tmp_path / 'home'))
+    monkeypatch.setattr(stop_record, 'PLACES', (str(tmp_path / 'place'),))
+    StopRecord(3, '/').keep()
+    monkeypatch.setenv('TMPDIR', str(tmp_path / 'shell'))
+    monkeypatch.setattr(tempfile, 'tempdir', None)
+    assert StopRecord(3, '/').is_on()
 
 
 class TestStopRecord:

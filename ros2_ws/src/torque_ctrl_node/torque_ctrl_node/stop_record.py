@@ -16,7 +16,6 @@
 
 import json
 import os
-import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -24,12 +23,16 @@ from pathlib import Path
 from shared_control.files import state_folder, write_atomically
 from shared_control.processes import starter
 
+PLACES = ('/tmp', '/dev/shm')
+"""Where it is kept if there is no home to write to. Not where TMPDIR says: a controller that is started again from
+another shell would look elsewhere. A container may have a memory to write to and no disk."""
+
 
 class StopRecord:
     """Says whether the emergency stop of a graph is on, across the death of its controller.
 
-    It is kept in ``$ROS_HOME`` (``~/.ros``), or in the folder of temporary files where that cannot be written, until it
-    is forgotten. Only a controller that left cleanly and is then started by somebody else begins without it: a
+    It is kept in ``$ROS_HOME`` (``~/.ros``), or in one of ``PLACES`` where that cannot be written, until it is
+    forgotten. Only a controller that left cleanly and is then started by somebody else begins without it: a
     supervisor that starts it again, whatever ended it, is the same one as before.
 
     Args:
@@ -100,4 +103,4 @@ def _read(path: Path) -> dict[str, str | bool]:
 
 
 def _folders() -> list[Path]:
-    return [state_folder(), Path(tempfile.gettempdir()) / f'shared_control_{os.getuid()}']
+    return [state_folder(), *(Path(place) / f'shared_control_{os.getuid()}' for place in PLACES)]
