@@ -23,6 +23,8 @@ from teach_page_node.address import TOKEN_VARIABLE, free_port, needs_token, page
 from .settings import Settings
 
 NODE = 'teach_page_node'
+TOKEN = 'token'
+"""Parameter of the node that no file of a session has in it."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,9 @@ class Page:
         Raises:
             OSError: the host is none of this machine's, or the port is in use.
         """
-        token = parameters.get(NODE, {}).pop('token', '')
+        token = parameters.get(NODE, {}).get(TOKEN, '')
+        for values in parameters.values():  # a file may give it to all nodes
+            values.pop(TOKEN, None)
         if settings.tutor != 'page':
             return None
         host, port = settings.page

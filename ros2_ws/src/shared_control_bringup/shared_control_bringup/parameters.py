@@ -14,6 +14,7 @@
 
 """The parameters of a session: the file that comes with the package, a file that is laid over it, and overrides."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,9 @@ from .graph import ALL_NODES
 DEFAULTS = Path(__file__).parent / 'config' / 'session.yaml'
 ANY_NODE = '/**'
 """Where a parameter file has values for all nodes."""
+
+_PROPERTIES = re.compile(r'(?:[&!]\S*\s+)*')
+"""Anchor and tag before a value in YAML."""
 
 
 class _WithoutAliases(yaml.SafeDumper):
@@ -65,6 +69,36 @@ def save(parameters: dict[str, dict[str, Any]], path: Path) -> None:
     """Write a ROS parameter file."""
     content = {node: {'ros__parameters': values} for node, values in parameters.items()}
     write_atomically(path, yaml.dump(content, Dumper=_WithoutAliases, sort_keys=False).encode())
+
+
+def blanked(text: bytes, name: str) -> bytes:
+    """A parameter file in which every parameter ``name`` is an empty text, and all else as it was, comments and layout.
+
+    ``text``: of a file that :func:`read` takes.
+    """
+    content = text.decode('utf-8')
+    found: set[tuple[int, int]] = set()
+    seen: set[int] = set()  # an alias is the node that it stands for, and may be within it
+    ahead: list[yaml.Node] = [yaml.compose(content, yaml.SafeLoader)]
+    while ahead:
+        node = ahead.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            ahead += node.value
+        elif isinstance(node, yaml.MappingNode):
+            for key, value in node.value:
+                if key.value == name:
+                    found.add((value.start_mark.index, value.end_mark.index))
+                else:
+                    ahead.append(value)
+    for start, end in sorted(found, reverse=True):
+        value = content[start:end]
+        properties = _PROPERTIES.match(value)[0]  # type: ignore[index]
+        line_end = '\n' if value.endswith('\n') else ''  # of a block of lines
+        content = f"{content[:start]}{properties}''{line_end}{content[end:]}"
+    return content.encode('utf-8')
 
 
 def read(text: bytes, path: Path) -> dict[str, dict[str, Any]]:

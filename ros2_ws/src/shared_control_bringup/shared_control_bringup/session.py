@@ -37,7 +37,7 @@ from .interrupts import Interrupts
 from .neighbours import Neighbours
 from .node_process import NodeProcess
 from .options import given_settings, refuse_options_of_new_sessions
-from .page import Page
+from .page import TOKEN, Page
 from .parameter_check import check_values, refuse_overridden
 from .settings import EPISODES_OF_SIMULATED, Settings
 from .supervisor import STOP_SECONDS
@@ -85,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
     with Interrupts() as interrupts:
         if earlier is None:
             folder = SessionFolder.create(path, hasattr(args, 'overwrite'), settings.to_json())
-            write_atomically(folder.given_parameters, given_parameters)
+            write_atomically(folder.given_parameters, ros_parameters.blanked(given_parameters, TOKEN))
         else:
             folder = earlier
             folder.claim()

@@ -15,7 +15,8 @@
 """The parameter file of a session."""
 
 import pytest
-from shared_control_bringup.parameters import DEFAULTS, load, save
+import yaml
+from shared_control_bringup.parameters import DEFAULTS, blanked, load, save
 
 
 def test_the_file_that_comes_with_the_package():
@@ -62,6 +63,33 @@ def test_a_file_that_is_no_text_is_refused_by_name(tmp_path):
     (tmp_path / 'mine.yaml').write_bytes(b'\xff\xfe\x00')
     with pytest.raises(ValueError, match=r'mine\.yaml is not valid YAML'):
         load(tmp_path / 'mine.yaml')
+
+
+def test_a_parameter_is_blanked_and_all_else_stays_as_it_was():
+    text = """# mine
+/**:  {ros__parameters: {use_sim_time: false, token: secret}}   # all
+/**/teach_page_node:
+  ros__parameters: &page
+    "token": &mine !!str "s€cret"  # of the page
+    port: 8088
+teleop_key_node:
+  ros__parameters:
+    token: *mine
+    <<: *page
+ppo_agent_node:
+  ros__parameters:
+    token: |
+      secret
+      secret
+    # the end
+    preset: token
+"""
+    expected = (text.replace('token: secret', "token: ''").replace('"s€cret"', "''")
+                .replace('|\n      secret\n      secret\n    # the end', "''\n    # the end"))
+    assert blanked(text.encode(), 'token').decode() == expected
+    assert 'cret' not in str(yaml.safe_load(expected))
+    assert blanked(b'# nothing\nppo_agent_node: {ros__parameters: {}}\n', 'token') == (
+        b'# nothing\nppo_agent_node: {ros__parameters: {}}\n')
 
 
 def test_what_all_nodes_share_is_written_without_aliases(tmp_path):

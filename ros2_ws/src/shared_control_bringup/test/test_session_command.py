@@ -27,6 +27,7 @@ from shared_control.cli import main
 from shared_control.robot.spec_file import load_robot
 from shared_control_bringup import session as command
 from shared_control_bringup.interrupts import Interrupts
+from shared_control_bringup.page import Page
 from shared_control_bringup.parameters import DEFAULTS, load
 from shared_control_bringup.settings import Settings
 from shared_control_bringup.teaching import End
@@ -347,6 +348,12 @@ def test_a_session_whose_files_are_damaged_does_not_go_on(session, tmp_path, cap
     assert content(folder) == before
 
 
+def test_a_token_that_a_file_gives_to_all_nodes_is_recorded_of_none():
+    parameters = {'panda_sim_node': {'token': 'secret', 'seed': 1}, 'teach_page_node': {'token': 'secret'}}
+    page = Page.choose(Settings(tutor='page', page=('0.0.0.0', 0)), parameters)
+    assert page.token == 'secret' and parameters == {'panda_sim_node': {'seed': 1}, 'teach_page_node': {}}
+
+
 def test_the_session_chooses_the_port_of_its_page_and_keeps_the_token_to_itself(session, tmp_path):
     folder = SessionFolder(tmp_path / 'session')
     assert session('--tutor', 'page', '--page', '127.0.0.1:0', '--output', folder.path) == 0
@@ -360,5 +367,8 @@ def test_the_session_chooses_the_port_of_its_page_and_keeps_the_token_to_itself(
         assert session('--tutor', 'page', '--page', '0.0.0.0:0', '--output', folder.path, '--overwrite', *options) == 0
         token = session.page.environment['teach_page_node']['SHARED_CONTROL_PAGE_TOKEN']
         assert session.page.address.endswith(f'/?token={token}')
-        assert token not in folder.parameters.read_text() and token not in folder.settings.read_text()
+        assert not any(token in file.read_text() for file in folder.path.rglob('*.*'))
     assert token == 'secret'
+    assert session('--resume', folder.path, '--episodes', 9) == 0
+    token = session.page.environment['teach_page_node']['SHARED_CONTROL_PAGE_TOKEN']
+    assert token not in ('', 'secret') and not any(token in file.read_text() for file in folder.path.rglob('*.*'))
