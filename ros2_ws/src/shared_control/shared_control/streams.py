@@ -35,7 +35,7 @@ def open_closed_streams() -> None:
 
 
 _NO_READER = (errno.EPIPE, errno.EIO)
-"""Of a pipe, and of a terminal."""
+"""When the reader of a pipe, or of a terminal, is gone."""
 
 
 class _Lossy:
