@@ -226,6 +226,7 @@ class PandaSimNode:
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self._paused = request.data
+        self._report()  # at once: keys do not count in a pause
         response.success = True
         response.message = 'paused' if self._paused else 'running'
         return response

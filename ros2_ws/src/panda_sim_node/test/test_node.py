@@ -15,6 +15,7 @@
 """The running simulator, with the real controller or with a test that answers its ticks."""
 
 import signal
+from itertools import groupby
 
 import numpy as np
 import pytest
@@ -130,6 +131,18 @@ class TestLockstepWithController:
         publisher.publish(push)
         observer.spin_for(0.3)
         assert np.abs(np.array(states[-1].position) - still).max() < 0.005, 'pushed as nobody can'
+
+    def test_a_pause_is_reported_at_once(self, observer, states):
+        reports = observer.listen(contract.DIAGNOSTICS)
+        for paused in [True, False] * 4:
+            pause(observer, paused)
+        told = []
+
+        def is_told():
+            paused = [v.value for r in reports for v in r.status[0].values if v.key == 'paused']
+            told[:] = [value for value, _ in groupby(paused)]
+            return told[-8:] == ['True', 'False'] * 4
+        observer.spin(is_told, what=f'every pause (told: {told})')
 
     def test_reports_its_pace(self, observer, states):
         reports = observer.listen(contract.DIAGNOSTICS)

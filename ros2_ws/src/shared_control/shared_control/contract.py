@@ -109,7 +109,8 @@ EMERGENCY_STOP = Topic(
     'true stops; false changes nothing')
 DIAGNOSTICS = Topic(
     'diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', 10, 'all nodes', '', '1 Hz',
-    'period p50 and p99, overruns, what is silent; of simulator and controller the task')
+    'period p50 and p99, overruns, what is silent; of simulator and controller the task; of a simulator, at once, '
+    'whether it is `paused`')
 CLOCK = Topic('/clock', 'rosgraph_msgs/msg/Clock', 100, 'simulator', 'all', '100 Hz', 'simulation time')
 """Absolute: rclpy expects it there, whatever the namespace."""
 EPISODE = Topic(

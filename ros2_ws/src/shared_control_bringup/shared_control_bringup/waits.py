@@ -249,14 +249,14 @@ class _Graph:
                     episode_age=now - self._ended, paused=self._paused)
 
     def _hear(self, message: Any, now: float) -> None:
-        """Simulators report their ticks once a second, and whether they are paused."""
+        """Simulators report their ticks once a second, and whether they are paused, that also at once."""
         for status in message.status:
             name = status.name.rpartition('/')[2]
             self.reported[name], self._newest[name] = now, status
             values = {value.key: value.value for value in status.values}
             if 'ticks' in values:
-                self._paused = values.get('paused') == 'True'
-                if values['ticks'] != self._ticks:
+                was_paused, self._paused = self._paused, values.get('paused') == 'True'
+                if values['ticks'] != self._ticks or (was_paused and not self._paused):
                     self._ticks, self._ticked = values['ticks'], now
 
     def held_up(self, names: tuple[str, ...], now: float) -> str:

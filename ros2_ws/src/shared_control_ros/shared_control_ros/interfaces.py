@@ -61,7 +61,8 @@ INTERFACES = {
         serves=CONTROLLER),
     'teleop_key_node': Interface(
         publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.HUMAN_VERDICT, contract.DIAGNOSTICS),
-        subscribes=(contract.JOY, contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING),
+        subscribes=(contract.JOY, contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING,
+                    contract.DIAGNOSTICS),
         calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'ppo_agent_node': Interface(
         publishes=(contract.AGENT_WRENCH, contract.DIAGNOSTICS, *contract.TRAINING, contract.VERDICT),

@@ -41,6 +41,7 @@ from shared_control_ros.runner import Stop, run
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.task_parameter import declare_task
 from shared_control_ros.watching.lesson import Lesson
+from shared_control_ros.watching.pause import Pause
 from shared_control_ros.wrenches import base_wrench, set_moment
 
 from .joystick import Joystick, declare_stick
@@ -105,6 +106,7 @@ class TeleopKeyNode:
         self._keys = Polled(node, contract.KEYS, depth=50)
         self._names = SharedNames()
         self._lesson = Lesson(node)
+        self._pause = Pause(node)
         device: Device = (
             KeyDevice(self._task, self._keystroke, self._moment_limit, *stick) if self._device == KEYS_DEVICE
             else load(DEVICES, self._device)(self._task, self._keystroke, self._moment_limit))
@@ -168,10 +170,13 @@ class TeleopKeyNode:
             self.node.get_logger().warning(f'the terminal is gone: serving {self._keys.topic_name} only')
 
     def _follow_lesson(self) -> None:
-        """Every episode and phase starts without a moment of the human, and most phases stay so."""
-        if self._lesson.update():
+        """Every episode and phase starts without a moment of the human, and most phases, and pauses, stay so."""
+        begins = self._lesson.update()
+        self._pause.update()
+        counts = self._lesson.keys_count and not self._pause.is_on
+        if begins or counts != self._sources.is_active:
             self._sources.release()
-            self._sources.is_active = self._lesson.keys_count
+            self._sources.is_active = counts
 
     def _hear_keys(self, now_ns: int) -> None:
         while (taken := self._keys.take_with_info()) is not None:
@@ -183,13 +188,13 @@ class TeleopKeyNode:
                 self._tell(text)
                 continue  # it falls silent, and its moment goes
             try:
-                self._sources.hear(source, joy.axes, joy.buttons, now_ns)
+                self._sources.hear(source, joy.axes, joy.buttons, now_ns, time.monotonic())
                 self._verdicts.hear(source, joy.buttons)
             except ValueError as error:
                 text = f'dropped a message of {source!r} on {self._keys.topic_name}: {error}'
                 self.node.get_logger().error(text, throttle_duration_sec=1.0)
                 self._tell(text)
-        for source in self._sources.drop_silent(now_ns):
+        for source in self._sources.drop_silent(now_ns, time.monotonic()):
             text = (f'{source!r} fell silent on {self._keys.topic_name} for more than {self._timeout} s: '
                     'M_yh is set to zero')
             self.node.get_logger().warning(text, throttle_duration_sec=1.0)
@@ -210,7 +215,6 @@ class TeleopKeyNode:
         over = self._in_session and self._lesson.phase == 'done'
         if not over and self._lesson.forget_if_over():
             self._sources.release()
-            self._sources.is_active = True
         self._diagnostics.publish({}, moment=self._sources.moment.tolist())
 
     def close(self) -> None:

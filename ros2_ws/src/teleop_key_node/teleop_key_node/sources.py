@@ -21,6 +21,9 @@ from shared_control.teaching.device import Device
 
 REMEMBERED = 20
 """So many sources are remembered where silent ones are not forgotten: whoever makes up names fills no memory."""
+_WHILE_TIME_STANDS = 4.0
+"""A source is silent after so many timeouts by the monotonic clock, too: the robot's time may stand still. After one, a
+machine that is held up for a moment would take a person's push away."""
 
 
 class Sources:
@@ -28,14 +31,16 @@ class Sources:
 
     Args:
         device: what turns their states into the moment.
-        timeout: a source that did something and is silent for longer takes the moment with it, s.
+        timeout: a source that did something and is silent for longer takes the moment with it, s of the robot's time.
     """
 
     def __init__(self, device: Device, timeout: float):
         self._device = device
         self._size = len(device.moment)
         self._timeout_ns = round(timeout * 1e9)
-        self._heard_ns: dict[str, int] = {}
+        self._timeout = timeout
+        self._heard: dict[str, tuple[int, float]] = {}
+        """When, by the robot's time, ns, and by the monotonic clock, s."""
         self._holding: set[str] = set()
         self._is_active = True
         self.last_pressed = ''
@@ -57,14 +62,14 @@ class Sources:
         if not active:
             self.release()
 
-    def hear(self, source: str, axes: Sequence[float], buttons: Sequence[int], now_ns: int) -> None:
-        """The state of one source, heard at ``now_ns``.
+    def hear(self, source: str, axes: Sequence[float], buttons: Sequence[int], now_ns: int, now: float) -> None:
+        """The state of one source, heard at ``now_ns`` of the robot's time and ``now`` of the monotonic clock, s.
 
         Raises:
             ValueError: this is no state of the device.
         """
         acts = self._device.update(source, axes, buttons)
-        self._heard_ns[source] = now_ns
+        self._heard[source] = now_ns, now
         if not self._is_active:
             self._device.release()
             return
@@ -78,14 +83,15 @@ class Sources:
         if not moment.any():
             self._holding.clear()
 
-    def drop_silent(self, now_ns: int) -> list[str]:
+    def drop_silent(self, now_ns: int, now: float) -> list[str]:
         """Forget the sources that fell silent; the names of those whose moment was thereby set to zero.
 
         A clock that jumped back (a simulator started anew) makes every source silent.
         """
-        silent = [name for name, heard in self._heard_ns.items() if not 0 <= now_ns - heard <= self._timeout_ns]
+        silent = [name for name, (heard_ns, heard) in self._heard.items()
+                  if not 0 <= now_ns - heard_ns <= self._timeout_ns or now - heard > _WHILE_TIME_STANDS * self._timeout]
         for name in silent:
-            del self._heard_ns[name]
+            del self._heard[name]
             self._device.forget(name)
         gone = [name for name in silent if name in self._holding]
         if gone:

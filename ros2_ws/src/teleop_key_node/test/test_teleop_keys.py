@@ -119,47 +119,55 @@ def test_a_device_that_makes_nonsense_is_named_and_let_go():
     device = Broken(BALANCE)
     sources = Sources(device, timeout=0.5)
     with pytest.raises(ValueError, match='the device makes'):
-        sources.hear('a', [], [1, 0, 0], 0)
+        sources.hear('a', [], [1, 0, 0], 0, 0.0)
     assert not KeyDevice.moment.fget(device).any()
 
 
 def test_a_silent_source_is_forgotten_and_others_stay():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
-    sources.hear('a', [], [1, 0, 0], 0)
-    sources.hear('b', [], [0, 0, 0], SECOND)
-    assert sources.drop_silent(SECOND) == ['a']
+    sources.hear('a', [], [1, 0, 0], 0, 0.0)
+    sources.hear('b', [], [0, 0, 0], SECOND, 1.0)
+    assert sources.drop_silent(SECOND, 1.0) == ['a']
     assert sources.moment[0] == 0.0
-    sources.hear('b', [], [1, 0, 0], SECOND)
-    sources.hear('c', [], [0, 0, 0], SECOND)
-    sources.hear('b', [], [1, 0, 0], 2 * SECOND)
-    assert sources.drop_silent(2 * SECOND) == [], 'c never pressed'
+    sources.hear('b', [], [1, 0, 0], SECOND, 1.0)
+    sources.hear('c', [], [0, 0, 0], SECOND, 1.0)
+    sources.hear('b', [], [1, 0, 0], 2 * SECOND, 2.0)
+    assert sources.drop_silent(2 * SECOND, 2.0) == [], 'c never pressed'
     assert sources.moment[0] == 5.0
 
 
 def test_whoever_left_before_the_moment_was_zero_takes_nothing_away():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
-    sources.hear('page', [], [1, 0, 0], 0)
-    sources.hear('terminal', [], [0, 0, 1], 0)
-    sources.hear('terminal', [], [0, 1, 0], SECOND // 2)
-    sources.hear('terminal', [], [0, 1, 0], SECOND)
-    assert sources.drop_silent(SECOND) == []
+    sources.hear('page', [], [1, 0, 0], 0, 0.0)
+    sources.hear('terminal', [], [0, 0, 1], 0, 0.0)
+    sources.hear('terminal', [], [0, 1, 0], SECOND // 2, 0.5)
+    sources.hear('terminal', [], [0, 1, 0], SECOND, 1.0)
+    assert sources.drop_silent(SECOND, 1.0) == []
     assert sources.moment[0] == -5.0
+
+
+def test_whoever_leaves_while_time_stands_still_takes_the_moment_along():
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    sources.hear('page', [], [1, 0, 0], SECOND, 10.0)
+    assert sources.drop_silent(SECOND, 11.9) == [], 'a machine may be held up'
+    assert sources.drop_silent(SECOND, 12.1) == ['page']
+    assert sources.moment[0] == 0.0
 
 
 def test_a_clock_that_jumps_back_makes_every_source_silent():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
-    sources.hear('a', [], [1, 0, 0], 9 * SECOND)
-    assert sources.drop_silent(SECOND) == ['a']
+    sources.hear('a', [], [1, 0, 0], 9 * SECOND, 9.0)
+    assert sources.drop_silent(SECOND, 1.0) == ['a']
     assert sources.moment[0] == 0.0
 
 
 def test_a_key_held_over_the_start_of_an_episode_is_no_press():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
     sources.is_active = False
-    sources.hear('a', [], [1, 0, 0], 0)
+    sources.hear('a', [], [1, 0, 0], 0, 0.0)
     sources.is_active = True
-    sources.hear('a', [], [1, 0, 0], 0)
+    sources.hear('a', [], [1, 0, 0], 0, 0.0)
     assert sources.moment[0] == 0.0
-    sources.hear('a', [], [0, 0, 0], 0)
-    sources.hear('a', [], [1, 0, 0], 0)
+    sources.hear('a', [], [0, 0, 0], 0, 0.0)
+    sources.hear('a', [], [1, 0, 0], 0, 0.0)
     assert sources.moment[0] == 5.0

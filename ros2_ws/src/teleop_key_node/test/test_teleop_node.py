@@ -18,6 +18,7 @@ import signal
 import time
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Joy
 from shared_control_ros import contract
@@ -77,7 +78,7 @@ def test_a_silent_source_takes_its_moment_with_it(graph, start):
     graph.expect(0.0)
 
 
-def test_keys_rest_unless_the_robot_is_taught(graph, start):
+def test_keys_rest_unless_the_robot_is_taught_and_time_goes_on(graph, start):
     start('screen:=off', 'source_timeout:=10.0')
     graph.begin('teach', episode=1)
     time.sleep(0.2)
@@ -95,6 +96,25 @@ def test_keys_rest_unless_the_robot_is_taught(graph, start):
     graph.expect(-5.0)
     graph.begin('teach', episode=3)
     graph.expect(0.0)
+
+    reports = graph.publisher(contract.DIAGNOSTICS)
+    graph.until(lambda: reports.get_subscription_count() == 1, 'the node hears the simulator')
+
+    def report(paused):
+        status = DiagnosticStatus(values=[KeyValue(key='paused', value=str(paused))])
+        reports.publish(DiagnosticArray(status=[DiagnosticStatus(), status]))
+    graph.press(1, 0, 0)
+    graph.expect(5.0)
+    report(True)
+    graph.expect(0.0)
+    for down in (0, 1, 0):
+        graph.press(down, 0, 0)
+    for paused in (True, False):
+        report(paused)
+        received = graph.received
+        graph.until(lambda before=received: graph.listen() == 0.0 and graph.received > before + 10, 'ten ticks of zero')
+    graph.press(1, 0, 0)
+    graph.expect(5.0)
 
 
 def test_a_gamepad_counts_as_its_driver_publishes_it(graph, start):
