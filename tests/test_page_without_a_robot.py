@@ -3,8 +3,10 @@
 import re
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from shared_control_ros import contract
 from shared_control_testing.page import Browser
+from std_msgs.msg import String
 
 ARROW_RIGHT = {'key': 'ArrowRight', 'code': 'ArrowRight', 'windowsVirtualKeyCode': 39}
 
@@ -41,6 +43,21 @@ class TestTheKeyboard:
         assert 'cannot draw in 3D' in browser.text('scene')
         assert browser.text('doing') == 'Waiting for the robot …'
         assert browser.barriers() == [] == browser.nameless()
+
+    def test_it_shows_what_is_waited_for_and_a_pause_whoever_asked_for_it(self, browser, observer):
+        waiting, reports = observer.publisher(contract.WAITING), observer.publisher(contract.DIAGNOSTICS)
+        observer.spin(lambda: waiting.get_subscription_count() and reports.get_subscription_count(), what='the page')
+
+        def report(paused):
+            reports.publish(DiagnosticArray(status=[DiagnosticStatus(values=[KeyValue(key='paused', value=paused)])]))
+        waiting.publish(String(data='for panda_sim_node to start since 14:00 (7 s)'))
+        browser.wait(lambda: browser.text('doing') == 'Waiting for panda_sim_node to start since 14:00 (7 s)', 'why')
+        waiting.publish(String())
+        report('True')
+        browser.wait(lambda: browser.text('pause-text') == 'Go on', 'the pause')
+        assert browser.text('doing') == 'Paused: everything waits, and keys do not count.'
+        report('False')
+        browser.wait(lambda: browser.text('pause-text') == 'Pause', 'going on')
 
     @pytest.mark.parametrize(('name', 'key'), [
         ('left', {'key': 'a', 'code': 'KeyQ', 'windowsVirtualKeyCode': 65}),  # a French keyboard

@@ -76,7 +76,8 @@ INTERFACES = {
                     contract.PHASE)),
     'teach_page_node': Interface(
         publishes=(contract.KEYS, contract.HUMAN_VERDICT, contract.DIAGNOSTICS),
-        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING),
+        subscribes=(contract.KEYS, *DISPLAYED, *contract.TRAINING, contract.VERDICT, contract.WAITING,
+                    contract.DIAGNOSTICS),
         calls=(contract.PAUSE_SERVICE, *LEARNER)),
     'session_recorder_node': Interface(publishes=(contract.DIAGNOSTICS,), subscribes=contract.BAG_TOPICS),
     'robot_view_node': Interface(

@@ -31,6 +31,7 @@ from shared_control_ros.fast_loop import Background, Polled, follow_clock
 from shared_control_ros.watching.judge import Judge
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Moment, Observer
+from shared_control_ros.watching.pause import Pause
 from shared_control_ros.watching.scene import Scene
 
 from .ending import Ending
@@ -69,7 +70,8 @@ class LiveDesk:
         self._keys = node.create_publisher(contract.KEYS.msg_type, contract.KEYS.name, contract.KEYS.qos)
         self._joy = Joy(buttons=[0] * count_buttons(task.keys))
         self._joy.header.frame_id = PAGE
-        self._requests = PageRequests(node, self._tell)
+        self._pause = Pause(node)
+        self._requests = PageRequests(node, self._tell, self._pause)
         self._judge = Judge(node, self._tell)
         self._background = Background(node)
         self._notice_until = 0.0
@@ -80,6 +82,7 @@ class LiveDesk:
             self._background.spin_once(0.0)
         self._requests.expire()
         self._lesson.update()
+        self._pause.update()
         now = time.monotonic()
         scene = self._scene
         scene.phase, scene.episode, scene.began_ns = self._lesson.phase, self._lesson.episode, self._lesson.began_ns

@@ -18,6 +18,7 @@ from collections.abc import Callable
 
 from rclpy.node import Node
 from shared_control_ros import contract
+from shared_control_ros.watching.pause import Pause
 from shared_control_ros.watching.requests import HINT, Requests
 from std_srvs.srv import Trigger
 
@@ -25,8 +26,8 @@ from std_srvs.srv import Trigger
 class PageRequests(Requests):
     """Also: start the episode over."""
 
-    def __init__(self, node: Node, tell: Callable[[str], None]):
-        super().__init__(node, tell)
+    def __init__(self, node: Node, tell: Callable[[str], None], pause: Pause):
+        super().__init__(node, tell, pause)
         self._repeat = node.create_client(Trigger, contract.REPEAT_SERVICE)
 
     def repeat(self) -> None:

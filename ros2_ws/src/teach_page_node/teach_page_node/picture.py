@@ -76,7 +76,7 @@ class Picture:
     """The source of the latest key press."""
     paused: bool = False
     silent_for: float | None = None
-    """How long the robot has said nothing, s; None: it speaks."""
+    """How long the robot has said nothing since the page is there, s; None: it speaks."""
     notice: str = ''
     time: float = 0.0
     """Time of the charts, s: the robot's, or that of the replay."""

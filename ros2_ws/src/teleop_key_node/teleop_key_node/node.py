@@ -134,7 +134,7 @@ class TeleopKeyNode:
         keys = self._task.keys if self._device == KEYS_DEVICE else {}
         return Panel(self.node, terminal, self._rate, self._frame_rate, self._keystroke, self._moment_limit,
                      self._characters, keys, self._task, self._in_session, self._feedback,
-                     self._offers_verdicts)
+                     self._offers_verdicts, self._pause)
 
     def run(self, stop: Stop) -> None:
         """Turn what the person does into M_h until told to stop."""

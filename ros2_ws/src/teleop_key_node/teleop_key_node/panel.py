@@ -28,6 +28,7 @@ from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.judge import Judge
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Observer
+from shared_control_ros.watching.pause import Pause
 from shared_control_ros.watching.requests import Requests
 from shared_control_ros.watching.scene import Scene
 
@@ -63,6 +64,7 @@ class Panel:
         in_session: whether a lesson is about to be given.
         feedback: what the person is told: one of ``FEEDBACK``.
         verdicts: whether the person is offered to judge episodes.
+        pause: what is known of it; kept up to date by the node.
         characters: ``auto``, ``unicode`` or ``ascii``.
         task: what is taught.
         keys: what the keys move; none when the person holds another device: then only q, p and the screen are here.
@@ -70,7 +72,7 @@ class Panel:
 
     def __init__(self, node: Node, terminal: Terminal, rate: float, frame_rate: float, keystroke: float,
                  moment_limit: float, characters: str, keys: KeyMap, task: Task, in_session: bool,
-                 feedback: str, verdicts: bool):
+                 feedback: str, verdicts: bool, pause: Pause):
         self.terminal = terminal
         known = {*keys, Key.SPACE} if keys else set()
         self._keyboard = Keyboard([stroke for stroke, key in _KEYS.items() if key not in known])
@@ -81,7 +83,7 @@ class Panel:
         self._joy.header.frame_id = TERMINAL
         self._repeat_ticks = max(round(_REPEAT_EVERY * rate), 1)
         self._ticks = 0
-        self.requests = Requests(node, self.tell)
+        self.requests = Requests(node, self.tell, pause)
         self._judge = Judge(node, self.tell)
         self._observer = Observer(node, task)
         self._scene = Scene(task=task, human=(0.0,) * len(task.axes), moment_limit=moment_limit, keystroke=keystroke,

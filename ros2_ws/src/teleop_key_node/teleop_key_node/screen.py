@@ -116,8 +116,8 @@ def _headline(scene: Scene, width: int) -> str:
 def _silence(scene: Scene, seconds: float) -> str:
     """What is said of a robot of which nothing has been heard for some seconds."""
     if not scene.in_session:
-        return 'No /joint_states' + (f' for {seconds:.0f} s.' if math.isfinite(seconds) else ' yet.')
-    return STUCK.format(seconds=f'{seconds:.0f}') if STUCK_SECONDS < seconds < math.inf else STANDS_STILL
+        return 'No /joint_states' + (' yet.' if scene.pitch is None else f' for {seconds:.0f} s.')
+    return STUCK.format(seconds=f'{seconds:.0f}') if seconds > STUCK_SECONDS else STANDS_STILL
 
 
 def _lesson(scene: Scene) -> Words:

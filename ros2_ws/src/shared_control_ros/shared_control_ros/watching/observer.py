@@ -71,7 +71,7 @@ class Observer:
         self._length = task.episode_seconds
         self._begun: tuple[str | None, int | None] = None, None
         self._stamp_ns = -1
-        self._moved_at = -math.inf
+        self._moved_at = time.monotonic()  # nobody has waited for longer
         self._tray: tuple[np.ndarray, np.ndarray] | None = None
 
     @property

@@ -23,11 +23,13 @@ from rclpy.task import Future
 from std_srvs.srv import SetBool, Trigger
 
 from .. import contract
+from .pause import Pause
 
 ANSWER_WITHIN = 3.0
 """s"""
 RUNS_AGAIN_NS = 500_000_000
-"""So far beyond its pause, simulation time has been let go on by somebody else; less may still have been under way."""
+"""So far beyond its pause, simulation time has been let go on by somebody else; less may still have been under way.
+Where the simulator reports its pauses, that is not asked."""
 HINT = 'is the learner (ppo_agent_node) running?'
 
 
@@ -36,20 +38,25 @@ class Requests:
 
     Args:
         tell: takes a line for the person.
+        pause: what is known of it; kept up to date by somebody else.
     """
 
-    def __init__(self, node: Node, tell: Callable[[str], None]):
+    def __init__(self, node: Node, tell: Callable[[str], None], pause: Pause):
         self._tell = tell
+        self._known = pause
         self._finish = node.create_client(Trigger, contract.FINISH_SERVICE)
         self._keep_teaching = node.create_client(Trigger, contract.KEEP_TEACHING_SERVICE)
         self._start = node.create_client(Trigger, contract.START_SERVICE)
         self._pause = node.create_client(SetBool, contract.PAUSE_SERVICE)
         self._pending: dict[Future, tuple[Client, float]] = {}
-        self.paused = False
-        """Whether the simulator has been paused from here."""
         self._paused_ns = 0
         self.ending = False
         """Whether the teaching ends with this episode, because it was asked for here."""
+
+    @property
+    def paused(self) -> bool:
+        """Whether the simulation is paused, by whomever."""
+        return self._known.is_on
 
     @property
     def is_pending(self) -> bool:
@@ -81,7 +88,7 @@ class Requests:
 
         def answered(response: SetBool.Response) -> None:
             if response.success:
-                self.paused = pause
+                self._known.is_on = pause
             self._tell('' if response.success else f'Could not {"pause" if pause else "go on"}: {response.message}')
         self._call(self._pause, SetBool.Request(data=pause), answered, 'this robot cannot be paused.')
 
@@ -92,8 +99,8 @@ class Requests:
             phase: of the lesson; None when it is not known.
             stamp_ns: the newest simulation time.
         """
-        if stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
-            self.paused = False
+        if not self._known.is_reported and stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
+            self._known.is_on = False
         if phase not in (None, 'teach', 'learn'):
             self.ending = False
 

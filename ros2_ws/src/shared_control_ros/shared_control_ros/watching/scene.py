@@ -101,7 +101,7 @@ class Scene:
     """Whether the teaching ends with this episode."""
     paused: bool = False
     simulator_silent_for: float | None = None
-    """How long the simulator has said nothing, s; None: it runs."""
+    """How long the simulator has said nothing since the screen is there, s; None: it runs."""
     waiting: str = ''
     """What the session waits for, since when, and in a second line why; empty: nothing, or there is no session."""
     message: str = ''

@@ -64,7 +64,7 @@ function says(picture, doing) {
   if (asked && performance.now() < asked.until && asked.paused !== picture.paused) return ["", asked.paused ? "Pausing …" : "Going on …"];
   asked = null;
   if (picture.paused) return ["", "Paused: everything waits, and keys do not count."];
-  if (picture.q === null) return ["trouble", "Waiting for the robot …"];
+  if (picture.q === null) return ["trouble", picture.notice || "Waiting for the robot …"];
   if (picture.silent_for !== null && (phase === "teach" || phase === "test" || phase === "practice")) {
     return ["trouble", isStuck(picture) ? window.teachPage.stuck.replace("{seconds}", picture.silent_for.toFixed(0)) : window.teachPage.stands_still];
   }
