@@ -4,6 +4,7 @@ import re
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from shared_control.keys import has_let_go
 from shared_control_ros import contract
 from shared_control_testing.page import Browser
 from std_msgs.msg import String
@@ -89,6 +90,16 @@ class TestTheKeyboard:
         down = ['[0,1,0]' in text for text in sent]
         assert sum(now and not before for before, now in zip([False, *down], down, strict=False)) == 2
         press('keyUp', **ARROW_RIGHT)
+
+    def test_without_the_focus_it_lets_go_and_presses_nothing(self, browser, press, observer):
+        joys = observer.listen(contract.KEYS)
+        press('rawKeyDown', **ARROW_RIGHT)
+        observer.spin(lambda: joys and list(joys[-1].buttons) == [0, 1, 0], what='the key')
+        joys.clear()
+        browser.script('window.dispatchEvent(new Event("blur"))')
+        observer.spin(lambda: joys and has_let_go(joys[-1].axes, joys[-1].buttons), what='an empty state')
+        assert {tuple(joy.buttons) for joy in joys} <= {(0, 1, 0), ()}
+        browser.script('window.dispatchEvent(new Event("focus"))')
 
     def test_a_part_that_fails_takes_no_other_with_it(self, browser):
         browser.script("document.querySelector('[data-part=tilt]').remove()")

@@ -28,6 +28,9 @@ HUMAN_MOMENT_LIMIT = 10.0
 TERMINAL, PAGE, TUTOR = OUR_SOURCES = ('terminal', 'page', 'tutor')
 """Names of the sources of keys that are parts of the graph themselves; the tutor is simulated."""
 
+COUNT_IN = ('practice', 'teach')
+"""The phases of a lesson in which keys count; they also do where nobody gives one."""
+
 
 class Key(IntEnum):
     """The keys; the value is the button's index in ``/human/keys``. Up and down are for tasks with two axes."""
@@ -87,6 +90,11 @@ MAX_SOURCES = 100
 def count_buttons(keys: KeyMap) -> int:
     """How many buttons a source of ``keys`` sends: left, right, space, and all up to the last that is used."""
     return max(BUTTONS, *(key + 1 for key in keys))
+
+
+def has_let_go(axes: Sequence[float], buttons: Sequence[int]) -> bool:
+    """Whether a state on ``/human/keys`` says that nobody is at its source any more: there is nothing in it."""
+    return len(axes) == 0 == len(buttons)
 
 
 class KeyPresses:

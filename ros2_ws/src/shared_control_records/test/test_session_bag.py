@@ -23,6 +23,7 @@ from shared_control.robot.spec_file import panda
 from shared_control_records.bag import fast_decode as bulk
 from shared_control_records.bag.ball_tracks import broken_off, episode_tracks
 from shared_control_records.bag.checks import check_bag
+from shared_control_records.bag.presses import presses_that_count
 from shared_control_records.bag.reader import BagReadError, read_bag
 from shared_control_records.bag.ticks import digests
 from shared_control_records.bag.timing import simulator_runs, timing_of
@@ -165,12 +166,31 @@ def test_presses_are_rising_edges_of_each_source(tmp_path):
     recording = made.Recording()
     for index, (source, buttons) in enumerate((
             ('tutor', (0, 0, 0)), ('tutor', (1, 0, 0)), ('page', (1, 0, 0)), ('tutor', (1, 0, 0)),
+            ('page', ()), ('page', (1, 0, 0)),
             ('tutor', (0, 0, 1)), ('tutor', (0, 0, 1)), ('tutor', (1,)), ('tutor', (1,)), ('tutor', (1, 0, 1)))):
         recording.add(contract.KEYS, made.START_NS + index, made.keys(made.START_NS, source, buttons))
     bag = read_bag(recording.write(tmp_path / 'bag'))
     assert [(press.source, press.key) for press in bag.presses] == [
-        ('tutor', Key.LEFT), ('page', Key.LEFT), ('tutor', Key.SPACE), ('tutor', Key.LEFT)]
+        ('tutor', Key.LEFT), ('page', Key.LEFT), ('page', Key.LEFT), ('tutor', Key.SPACE), ('tutor', Key.LEFT)]
     assert bag.unusable == {'/human/keys': 2}
+
+
+def test_presses_count_in_practice_and_teaching_unless_it_is_paused(tmp_path):
+    recording = made.Recording()
+
+    def add(ms, topic, content):
+        recording.add(topic, made.START_NS + ms * made.MS, content)
+    for ms, phase in ((10, 'wait'), (20, 'practice'), (30, 'wait'), (40, 'teach'), (80, 'learn'), (90, 'test')):
+        add(ms, contract.PHASE, made.message(contract.PHASE.type, data=phase))
+    for ms, paused in ((1, False), (50, True), (60, False)):
+        add(ms, contract.DIAGNOSTICS, made.status(made.START_NS, 'simulator', paused=paused))
+    for ms in range(5, 100, 10):
+        add(ms, contract.KEYS, made.keys(made.START_NS, 'page', (1, 0, 0)))
+        add(ms + 1, contract.KEYS, made.keys(made.START_NS, 'page', (0, 0, 0)))
+    bag = read_bag(recording.write(tmp_path / 'bag'))
+    counted = [(press.received_ns - made.START_NS) // made.MS for press in presses_that_count(bag)]
+    assert counted == [5, 25, 45, 65, 75], 'also before anybody gives a lesson'
+    assert len(bag.presses) == 10
 
 
 def test_an_empty_bag(tmp_path):

@@ -16,6 +16,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
@@ -110,7 +111,9 @@ def test_the_report_says_what_matters_and_needs_no_other_file(folder):
 
 
 @pytest.mark.parametrize(('tutor', 'said'), [
-    ('keyboard', 'Taught by a person'), ('none', 'Nobody taught'), ('<b>', 'Taught by a person (&lt;b&gt;)')])
+    ('keyboard', 'Taught by a person'),
+    ('none', 'Nobody was to teach, but somebody pressed keys or pushed. In the hand'),
+    ('<b>', 'Taught by a person (&lt;b&gt;)')])
 @pytest.mark.usefixtures('no_picture')
 def test_who_taught(folder, tutor, said):
     made.write_settings(folder.settings, tutor)
@@ -118,6 +121,16 @@ def test_who_taught(folder, tutor, said):
     page = folder.report.read_text()
     assert said in page
     assert 'The tutor was simulated' not in page
+
+
+@pytest.mark.parametrize(('presses', 'share', 'alone'), [
+    (0, 0.0, True), (None, None, True), (3, 0.0, False), (0, 0.1, False)])
+@pytest.mark.usefixtures('no_picture')
+def test_nobody_pressed_where_nobody_pressed_nor_pushed(folder, presses, share, alone):
+    summary = replace(write_report(folder), tutor='none', simulated_tutor=False, key_presses=presses, devices=[])
+    page = report.render_page(summary, [EpisodeRow(1, 'teach', 3.0, -1.0, False, share)], None, [])
+    assert ('Nobody pressed keys.' in page, 'Nobody taught' in page) == (alone, alone)
+    assert ('Nobody was to teach' in page) != alone
 
 
 @pytest.mark.usefixtures('no_picture')

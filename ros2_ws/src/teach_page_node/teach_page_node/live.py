@@ -22,7 +22,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import PAGE, Key, PressesBySource, count_buttons
+from shared_control.keys import PAGE, PressesBySource, count_buttons, has_let_go
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
@@ -138,6 +138,9 @@ class LiveDesk:
     def _hear_keys(self, now: float) -> None:
         while (joy := self._heard.take()) is not None:
             source = joy.header.frame_id
+            if has_let_go(joy.axes, joy.buttons):
+                self._presses.forget(source)
+                continue
             try:
                 pressed = self._presses.update(source, joy.buttons)
             except ValueError:
@@ -156,12 +159,8 @@ class LiveDesk:
         self._keys.publish(self._joy)
 
     def let_go(self) -> None:
-        """See :class:`Desk`. The space key says so at once; silence would say it after half a second."""
-        released = [0] * count_buttons(self.task.keys)
-        space = released.copy()
-        space[Key.SPACE] = 1
-        for buttons in (released, space, released):
-            self.press(buttons)
+        """See :class:`Desk`. An empty state says so at once; silence would say it after half a second."""
+        self.press([])
 
     def do(self, command: str, value: Any) -> None:
         """See :class:`Desk`."""

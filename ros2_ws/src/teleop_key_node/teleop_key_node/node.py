@@ -26,7 +26,7 @@ import time
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
-from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, OUR_SOURCES, Key
+from shared_control.keys import HUMAN_MOMENT_LIMIT, KEYSTROKE, OUR_SOURCES, Key, has_let_go
 from shared_control.plugins import DEVICES, load, names
 from shared_control.teaching.device import Device
 from shared_control.teaching.feedback import FEEDBACK
@@ -187,6 +187,9 @@ class TeleopKeyNode:
                 self.node.get_logger().error(text, throttle_duration_sec=1.0)
                 self._tell(text)
                 continue  # it falls silent, and its moment goes
+            if has_let_go(joy.axes, joy.buttons):
+                self._sources.leave(source)
+                continue
             try:
                 self._sources.hear(source, joy.axes, joy.buttons, now_ns, time.monotonic())
                 self._verdicts.hear(source, joy.buttons)

@@ -17,6 +17,7 @@
 import math
 import re
 
+from shared_control.keys import COUNT_IN
 from shared_control.verdict import Verdict
 from shared_control.wrench import AXIS_NAMES
 from shared_control_ros.watching.scene import Scene
@@ -174,7 +175,7 @@ def _off_the_goal(scene: Scene, width: int) -> str:
 
 def _push(scene: Scene, width: int, unicode: bool) -> str:
     """The notches of the person's push, and that it stays."""
-    if scene.phase not in (None, 'practice', 'teach') or scene.paused:
+    if scene.phase not in (None, *COUNT_IN) or scene.paused:
         return ' your keys do not count now'
     steps = max(round(scene.moment_limit / scene.keystroke), 1) if scene.keystroke > 0 else 1
     if steps > 8 or scene.from_above:

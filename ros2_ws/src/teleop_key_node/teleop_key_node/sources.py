@@ -90,13 +90,17 @@ class Sources:
         """
         silent = [name for name, (heard_ns, heard) in self._heard.items()
                   if not 0 <= now_ns - heard_ns <= self._timeout_ns or now - heard > _WHILE_TIME_STANDS * self._timeout]
-        for name in silent:
-            del self._heard[name]
-            self._device.forget(name)
         gone = [name for name in silent if name in self._holding]
-        if gone:
-            self.release()
+        for name in silent:
+            self.leave(name)
         return gone
+
+    def leave(self, source: str) -> None:
+        """Nobody is at a source any more: it is forgotten, and the moment is zero if it has held some of it."""
+        self._heard.pop(source, None)
+        self._device.forget(source)
+        if source in self._holding:
+            self.release()
 
     def release(self) -> None:
         """Let go of the device: no moment."""

@@ -146,6 +146,17 @@ def test_whoever_left_before_the_moment_was_zero_takes_nothing_away():
     assert sources.moment[0] == -5.0
 
 
+def test_whoever_lets_go_takes_away_what_was_held_and_no_more():
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    sources.hear('page', [], [1, 0, 0], 0, 0.0)
+    sources.leave('terminal')
+    assert sources.moment[0] == 5.0
+    sources.leave('page')
+    assert sources.moment[0] == 0.0
+    sources.hear('page', [], [1, 0, 0], 0, 0.0)
+    assert sources.moment[0] == 5.0, 'pressed anew'
+
+
 def test_whoever_leaves_while_time_stands_still_takes_the_moment_along():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
     sources.hear('page', [], [1, 0, 0], SECOND, 10.0)

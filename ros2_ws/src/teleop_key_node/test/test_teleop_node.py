@@ -43,6 +43,10 @@ def test_presses_of_several_sources_add_up(graph, start):
     graph.expect(5.0)
     graph.press(0, 0, 1)
     graph.expect(0.0)
+    graph.press(0, 1, 0)
+    graph.expect(-5.0)
+    graph.press()  # nobody is there any more
+    graph.expect(0.0)
 
     received, began = graph.received, time.monotonic()
     graph.hold(0.0, 1.0)

@@ -31,7 +31,7 @@ from rosbags.rosbag2.storage_mcap import McapReader
 from rosbags.typesys import Stores, get_typestore
 from shared_control import contract
 from shared_control.contract import Topic
-from shared_control.keys import PressesBySource
+from shared_control.keys import PressesBySource, has_let_go
 from shared_control.printable import ECHO_MAX, cut, escaped
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
@@ -406,6 +406,9 @@ class _Collector:
 
     def _add_keys(self, received_ns: int, message: Any) -> None:
         source = message.header.frame_id
+        if has_let_go(message.axes, message.buttons):
+            self._keys.forget(source)
+            return
         pressed = self._keys.update(source, message.buttons.tolist())
         is_held = any(self._stick.of([axis]).any() for axis in message.axes.tolist())
         self._presses += [Press(received_ns, source, key) for key in pressed]

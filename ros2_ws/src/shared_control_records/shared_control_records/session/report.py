@@ -38,6 +38,7 @@ from .summary import Summary, earlier_restarts, summarize
 _PAGE = Path(__file__).parent / 'page.html'
 STYLE_SHEET = Path(__file__).with_name('page.css')
 """Style sheet of this page and of other reports."""
+_NOT_ALONE = 'Nobody was to teach, but somebody pressed keys or pushed.'
 _NOT_KNOWN = '–'
 
 
@@ -75,7 +76,8 @@ def render_page(summary: Summary, rows: list[EpisodeRow], test: FinalTest | None
     return environment.from_string(_PAGE.read_text(encoding='utf-8')).render(
         css=Markup(STYLE_SHEET.read_text(encoding='utf-8')), title=_title(summary), s=summary, rows=rows, test=test,
         judged=any(row.verdict for row in rows),
-        figures=_figures(summary), done=_done(summary), panels=panels, origin=_origin(summary))
+        learned_alone=_learned_alone(summary, rows), not_alone=_NOT_ALONE,
+        figures=_figures(summary), done=_done(summary, rows), panels=panels, origin=_origin(summary))
 
 
 def _read(folder: SessionFolder) -> tuple[Bag | None, str | None]:
@@ -110,22 +112,32 @@ def _title(summary: Summary) -> str:
     return 'Session: ' + ' · '.join(parts)
 
 
-def _done(summary: Summary) -> str:
+def _learned_alone(summary: Summary, rows: list[EpisodeRow]) -> bool:
+    """Whether nobody was to teach, and nobody has done it either."""
+    return summary.tutor == 'none' and not summary.key_presses and not any(row.human_share for row in rows)
+
+
+def _done(summary: Summary, rows: list[EpisodeRow]) -> str:
     """What was done, in a sentence or two."""
     episodes = 'episode' if summary.episodes_taught == 1 else 'episodes'
     text = (f'The robot learned the task {summary.task} in {_number(summary.episodes_taught, "d")} {episodes} (preset '
             f'{summary.preset or "unknown"}). ')
     if summary.episodes_broken_off:
         text += f'Episodes broken off, from which it has not learned: {summary.episodes_broken_off}. '
-    if summary.tutor == 'none':
+    if _learned_alone(summary, rows):
         text += 'Nobody pressed keys.'
+    elif summary.tutor == 'none':
+        text += f'{_NOT_ALONE}{_in_the_hand(summary)}'
     else:
-        text += f'Tutor: {_tutor(summary)}, whose moment adds to the one that the robot puts on the tray.'
-        if summary.devices:
-            text += f' In the hand: {", ".join(summary.devices)}.'
+        text += (f'Tutor: {_tutor(summary)}, whose moment adds to the one that the robot puts on the tray.'
+                 f'{_in_the_hand(summary)}')
     if summary.autonomous_success is not None:
         text += f' Then the policy was tested alone, in {summary.autonomous_episodes} episodes of random starts.'
     return text
+
+
+def _in_the_hand(summary: Summary) -> str:
+    return f' In the hand: {", ".join(summary.devices)}.' if summary.devices else ''
 
 
 def _figures(summary: Summary) -> list[tuple[str, str]]:

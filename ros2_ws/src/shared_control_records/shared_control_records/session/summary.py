@@ -26,6 +26,7 @@ from shared_control_learning.episode_table import BROKEN_OFF
 from shared_control_learning.wrong_content import what_is_wrong
 
 from ..bag.checks import check_bag
+from ..bag.presses import presses_that_count
 from ..bag.reader import Bag
 from ..bag.timing import timing_of
 from .episodes import EpisodeRow
@@ -58,6 +59,7 @@ class Summary:
     taught_s: float | None
     """How long the robot was taught by its own time, with episodes broken off and discarded."""
     key_presses: int | None
+    """Those that counted: in practice and teaching, and not while it was paused."""
     devices: list[str] | None
     """What the person, or the simulated tutor, had in the hand: ``keys (terminal)``, ``stick (joy)``."""
     autonomous_success: int | None
@@ -116,7 +118,7 @@ def summarize(folder: SessionFolder, task: Task, bag: Bag | None, bag_error: str
         episodes_broken_off=len(broken_off) if folder.episodes.exists() else None,
         taught_s=round(sum(row.seconds or 0.0 for row in rows if row.phase in ('teach', BROKEN_OFF)), 3)
         if rows else None,
-        key_presses=len(bag.presses) if bag else None,
+        key_presses=len(presses_that_count(bag)) if bag else None,
         devices=bag.devices if bag else None,
         autonomous_success=test.successes if test else None,
         autonomous_episodes=len(test.episodes) if test else None,

@@ -15,6 +15,7 @@
 """What the agent tells of the lesson that decides whether keys count."""
 
 from rclpy.node import Node
+from shared_control.keys import COUNT_IN
 
 from .. import contract
 from ..fast_loop import Polled
@@ -38,7 +39,7 @@ class Lesson:
     @property
     def keys_count(self) -> bool:
         """Keys count in practice, while the robot is taught, and when no lesson is given at all."""
-        return self.phase in (None, 'practice', 'teach')
+        return self.phase in (None, *COUNT_IN)
 
     def update(self) -> bool:
         """Take what was published; whether a new episode or phase has begun."""
