@@ -77,7 +77,8 @@ class NodeProcess:
         """When it was seen to be ready, s of the monotonic clock; infinite until then."""
         self._command = [sys.executable, '-m', node_module(name), '--ros-args', '--params-file', str(parameters),
                          '--disable-external-lib-logs']
-        self._in_foreground = in_foreground
+        self.in_foreground = in_foreground
+        """Whether it has the terminal, with Ctrl-C and Ctrl-Z, together with this process."""
         self._process: subprocess.Popen | None = None
         self._pipe: int | None = None
         self._is_starting = False
@@ -104,7 +105,7 @@ class NodeProcess:
                 self._log_begins = log.tell()
                 self._process = subprocess.Popen(
                     self._command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment,
-                    pass_fds=(theirs,), process_group=None if self._in_foreground else 0, preexec_fn=self._prepare)
+                    pass_fds=(theirs,), process_group=None if self.in_foreground else 0, preexec_fn=self._prepare)
         finally:
             os.close(theirs)  # the node's end alone is left: its death ends the waiting
 

@@ -28,6 +28,7 @@ from .node_process import NodeProcess
 from .page import Page
 from .progress import EpisodePrinter
 from .supervisor import SessionError, StoppedByNode, Supervisor
+from .suspension import Suspension
 from .waits import Waits
 
 POLL_SECONDS = 0.1
@@ -77,10 +78,12 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     waits = Waits(nodes, say)
 
     clock_steps = ClockSteps()
+    suspension = Suspension(next((node for node in nodes if node.in_foreground), None))
 
     def attend() -> None:
         if step := clock_steps.new():
             say(in_words(step))
+        suspension.poll()
         waits.poll()
         interrupts.check()
 
@@ -90,15 +93,16 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     began = time.monotonic()
     try:
         print('Starting simulator, controller and learner: about 10 s ...', flush=True)
-        supervisor.start()
-        say(f'all nodes are ready ({time.monotonic() - began:.0f} s)')
-        if page:
-            print(f'\n    Teach here: {page.address}\n', flush=True)  # with the token, hence not into the log
-        waits.open()
-        while supervisor.poll():
-            attend()
-            episodes.poll()
-            time.sleep(POLL_SECONDS)
+        with suspension:
+            supervisor.start()
+            say(f'all nodes are ready ({time.monotonic() - began:.0f} s)')
+            if page:
+                print(f'\n    Teach here: {page.address}\n', flush=True)  # with the token, hence not into the log
+            waits.open()
+            while supervisor.poll():
+                attend()
+                episodes.poll()
+                time.sleep(POLL_SECONDS)
         end = End.DONE
     except (KeyboardInterrupt, StoppedByNode):
         end = End.STOPPED

@@ -229,12 +229,15 @@ class _Graph:
         self._status = DiagnosticStatus(name=self._node.get_fully_qualified_name(), level=DiagnosticStatus.OK)
         self._next_report = 0.0
         self._ticks = ''
-        self._ticked = self._ended = self._phase_began = time.monotonic()
+        self._looked = self._ticked = self._ended = self._phase_began = time.monotonic()
         self._phase: str | None = None
         self._paused = False
 
     def look(self, now: float) -> Seen:
         """What is new."""
+        if now - self._looked > STANDSTILL / 2:
+            self._hear_anew(now)
+        self._looked = now
         while (message := self._phases.take()) is not None:
             if message.data != self._phase:
                 self._phase, self._phase_began = message.data, now
@@ -247,6 +250,11 @@ class _Graph:
             self._ended = now
         return Seen(phase=self._phase, phase_age=now - self._phase_began, tick_age=now - self._ticked,
                     episode_age=now - self._ended, paused=self._paused)
+
+    def _hear_anew(self, now: float) -> None:
+        """This process itself was stopped (Ctrl-Z): it has heard of nobody, whatever they did."""
+        self.reported = dict.fromkeys(self.reported, now)
+        self._ticked = self._ended = self._phase_began = now
 
     def _hear(self, message: Any, now: float) -> None:
         """Simulators report their ticks once a second, and whether they are paused, that also at once."""

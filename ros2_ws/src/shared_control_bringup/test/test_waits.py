@@ -150,14 +150,19 @@ def watched(domain_id, observer, tmp_path, monkeypatch):
         return [report.status[0] for report in reports if report.status[0].name == name]
 
     until(lambda: of('/sim_tutor_node'))
-    yield node, said, until, of, freeze
+    yield node, said, until, of, freeze, waits
     waits.close()
     node.kill()
     node.wait(60)
 
 
-def test_a_loop_that_somebody_has_stopped_is_said_and_reported_and_left_alone(watched):
-    node, said, until, of, _ = watched
+def test_a_loop_that_somebody_has_stopped_is_said_and_reported_and_left_alone(watched, monkeypatch):
+    node, said, until, of, *_, waits = watched
+    now = time.monotonic
+    waits.poll()
+    monkeypatch.setattr(waits_module.time, 'monotonic', lambda: now() + 100.0)  # as after Ctrl-Z and fg
+    waits.poll()
+    assert not said and '<module>' not in node.log.read_text(), 'it was this process that stood still'
     os.kill(node.pid, signal.SIGSTOP)
     began = time.monotonic()
     until(lambda: time.monotonic() > began + 9.0 and of('/session'))
@@ -171,7 +176,7 @@ def test_a_loop_that_somebody_has_stopped_is_said_and_reported_and_left_alone(wa
 
 
 def test_a_loop_that_stands_still_by_itself_writes_where_and_is_ended(watched):
-    node, said, until, of, freeze = watched
+    node, said, until, of, freeze, _ = watched
     freeze.touch()
     until(lambda: node.exit_code() is not None and of('/session'))
     assert node.exit_code() == -signal.SIGKILL

@@ -159,7 +159,7 @@ class TeleopKeyNode:
         if panel.terminal.suspend_requested:
             self._sources.release()
             self._publish(self._none, now_ns)
-            panel.terminal.suspend()
+            panel.suspend(self._background)
             self._diagnostics.skip()
         panel.read(now_ns)
         if panel.requests.is_pending:

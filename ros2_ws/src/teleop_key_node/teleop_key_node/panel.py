@@ -24,6 +24,7 @@ from shared_control.keys import LEFT_AND_RIGHT, TERMINAL, Key, KeyMap, count_but
 from shared_control.tasks.task import Task
 from shared_control.verdict import Verdict
 from shared_control_ros import contract
+from shared_control_ros.fast_loop import Background
 from shared_control_ros.stamps import set_ns
 from shared_control_ros.watching.judge import Judge
 from shared_control_ros.watching.lesson import Lesson
@@ -44,6 +45,8 @@ _REPEAT_EVERY = 0.08
 """The state of the keys is repeated after this, s."""
 _MESSAGE_FOR = 8.0
 """How long a notice stays, s."""
+_PAUSED_WITHIN = 1.0
+"""How long the answer to the pause is waited for before this process stops, s."""
 
 
 def speaks_unicode(characters: str) -> bool:
@@ -118,6 +121,14 @@ class Panel:
         if self._sends_keys and now_ns and (changed or self._ticks % self._repeat_ticks == 0):
             self._keys.publish(self._joy)
         self.requests.expire()
+
+    def suspend(self, background: Background) -> None:
+        """Pause, since nobody is there any more, and stop until the person is back, who goes on."""
+        self.requests.pause(True, self._observer.stamp_ns)
+        deadline = time.monotonic() + _PAUSED_WITHIN
+        while self.requests.is_pending and time.monotonic() < deadline:
+            background.spin_once(0.05)
+        self.terminal.suspend()
 
     def _held_keys(self) -> set[Key]:
         return {_KEYS[stroke] for stroke in self._held.down if stroke in _KEYS}

@@ -176,8 +176,12 @@ class Terminal:
             self._original = None
             self._output.release()
 
-    def leave(self) -> None:
-        """Put the terminal back as it was. Safe to call again, and when the terminal is gone."""
+    def leave(self, restore_modes: bool = True) -> None:
+        """Put the terminal back as it was. Safe to call again, and when the terminal is gone.
+
+        Args:
+            restore_modes: False when the shell has given it its own already, and keeps them.
+        """
         if self._original is None:
             return
         original, self._original = self._original, None
@@ -188,8 +192,9 @@ class Terminal:
             self._pending += f'\x1b[{self.size[1]};1H'.encode() + LEAVE
             while not self._flush() and time.monotonic() < deadline:
                 select.select([], [self._fd], [], 0.02)
-            termios.tcflush(self._fd, termios.TCIFLUSH)
-            termios.tcsetattr(self._fd, termios.TCSANOW, original)
+            if restore_modes:
+                termios.tcflush(self._fd, termios.TCIFLUSH)
+                termios.tcsetattr(self._fd, termios.TCSANOW, original)
         except (OSError, termios.error):
             self.is_gone = True
         finally:
@@ -205,7 +210,7 @@ class Terminal:
     def suspend(self) -> None:
         """Give the terminal back to the shell and stop until SIGCONT; the next read enters again."""
         self.suspend_requested = False
-        self.leave()
+        self.leave(restore_modes=self._is_foreground())
         signal.signal(signal.SIGTSTP, signal.SIG_DFL)
         os.kill(os.getpid(), signal.SIGTSTP)
         signal.signal(signal.SIGTSTP, self._on_suspend)

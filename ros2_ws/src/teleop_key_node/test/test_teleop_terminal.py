@@ -85,18 +85,38 @@ def test_the_terminal_is_restored(graph, start_in_terminal, number):
     assert '[INFO]' not in screen, 'log lines wait until the screen is gone'
 
 
-def test_suspended_the_person_lets_go(graph, start_in_terminal):
+def test_suspended_the_person_lets_go_and_it_is_paused(graph, start_in_terminal):
+    asked = []
+
+    def on_pause(request, response):
+        asked.append(request.data)
+        response.success = True
+        return response
+    graph.node.create_service(SetBool, contract.PAUSE_SERVICE, on_pause)
+    executor = SingleThreadedExecutor(context=graph.context)
+    executor.add_node(graph.node)
+
+    def until(happened):
+        graph.until(lambda: executor.spin_once(timeout_sec=0.01) or happened(), str(asked))
     terminal = start_in_terminal()
+    # Alone in its session, the process cannot stay stopped: it comes back at once.
     terminal.type(LEFT)
     graph.expect(5.0)
+    for _ in range(2):  # paused already, it stays so
+        before = len(terminal.shown)
+        terminal.type(b'\x1a')
+        until(lambda before=before: ENTER in terminal.shown[before:])
+        assert terminal.shown.index(LEAVE, before) < terminal.shown.index(ENTER, before)
+        graph.expect(0.0)
+        until(lambda before=before: '[ PAUSED ]' in terminal.shown[before:])
+    assert asked == [True, True]
+    terminal.type(b'p')
+    until(lambda: asked == [True, True, False])
     before = len(terminal.shown)
-    terminal.type(b'\x1a')
-    terminal.expect(LEAVE, after=before)
-    graph.expect(0.0)
-    # Alone in its session, the process cannot stay stopped: it comes back at once.
-    terminal.expect(ENTER, after=terminal.shown.rindex(LEAVE))
+    until(lambda: '[ PAUSED ]' not in terminal.shown[before:] and 'WAITING FOR' in terminal.shown[before:])
     terminal.type(RIGHT)
     graph.expect(-5.0)
+    executor.shutdown()
 
 
 def test_the_screen_shows_the_lesson(graph, start_in_terminal):

@@ -43,11 +43,11 @@ class Requests:
 
     def __init__(self, node: Node, tell: Callable[[str], None], pause: Pause):
         self._tell = tell
-        self._known = pause
+        self._pause = pause
         self._finish = node.create_client(Trigger, contract.FINISH_SERVICE)
         self._keep_teaching = node.create_client(Trigger, contract.KEEP_TEACHING_SERVICE)
         self._start = node.create_client(Trigger, contract.START_SERVICE)
-        self._pause = node.create_client(SetBool, contract.PAUSE_SERVICE)
+        self._pausing = node.create_client(SetBool, contract.PAUSE_SERVICE)
         self._pending: dict[Future, tuple[Client, float]] = {}
         self._paused_ns = 0
         self.ending = False
@@ -56,7 +56,7 @@ class Requests:
     @property
     def paused(self) -> bool:
         """Whether the simulation is paused, by whomever."""
-        return self._known.is_on
+        return self._pause.is_on
 
     @property
     def is_pending(self) -> bool:
@@ -83,14 +83,17 @@ class Requests:
 
     def toggle_pause(self, stamp_ns: int) -> None:
         """Pause the simulator, or go on; ``stamp_ns``: the newest simulation time."""
-        pause = not self.paused
+        self.pause(not self.paused, stamp_ns)
+
+    def pause(self, pause: bool, stamp_ns: int) -> None:
+        """Pause the simulator whether or not it is paused, or go on likewise."""
         self._paused_ns = stamp_ns
 
         def answered(response: SetBool.Response) -> None:
             if response.success:
-                self._known.is_on = pause
+                self._pause.is_on = pause
             self._tell('' if response.success else f'Could not {"pause" if pause else "go on"}: {response.message}')
-        self._call(self._pause, SetBool.Request(data=pause), answered, 'this robot cannot be paused.')
+        self._call(self._pausing, SetBool.Request(data=pause), answered, 'this robot cannot be paused.')
 
     def follow(self, phase: str | None, stamp_ns: int) -> None:
         """Bring up to date what still holds.
@@ -99,8 +102,8 @@ class Requests:
             phase: of the lesson; None when it is not known.
             stamp_ns: the newest simulation time.
         """
-        if not self._known.is_reported and stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
-            self._known.is_on = False
+        if not self._pause.is_reported and stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
+            self._pause.is_on = False
         if phase not in (None, 'teach', 'learn'):
             self.ending = False
 
