@@ -20,7 +20,7 @@ import termios
 import time
 
 import pytest
-from diagnostic_msgs.msg import KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nav_msgs.msg import Odometry
 from rclpy.executors import SingleThreadedExecutor
 from sensor_msgs.msg import JointState
@@ -198,6 +198,19 @@ def test_the_person_asks_the_other_nodes(graph, start_in_terminal):
     terminal.expect('[ PAUSED ]')
     ask(b'p', 3)
     assert asked == ['finish', True, False]
+    # The simulator has told that it is paused, and not answered yet.
+    reports = graph.publisher(contract.DIAGNOSTICS)
+    graph.until(lambda: reports.get_subscription_count() == 1, 'the screen hears the simulator')
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
+    before = len(terminal.shown)
+    terminal.type(b'p')
+    received = graph.received
+    graph.until(lambda: graph.listen() == 0.0 and graph.received > received + 20, 'the key to be read')
+    reports.publish(DiagnosticArray(status=[DiagnosticStatus(values=[KeyValue(key='paused', value='True')])]))
+    terminal.expect('[ PAUSED ]', after=before)
+    time.sleep(4 * HeldKeys.REPEATS_WITHIN)
+    terminal.type(b'p')
+    graph.until(lambda: executor.spin_once(timeout_sec=0.01) or asked[3:] == [True, False], 'both wishes')
     executor.shutdown()
 
 

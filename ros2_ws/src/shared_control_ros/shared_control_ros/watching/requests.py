@@ -86,8 +86,12 @@ class Requests:
         self.pause(not self.paused, stamp_ns)
 
     def pause(self, pause: bool, stamp_ns: int) -> None:
-        """Pause the simulator whether or not it is paused, or go on likewise."""
+        """Pause the simulator whether or not it is paused, or go on likewise.
+
+        A pause is known from the report, which may come before the answer: a new wish does not wait for that.
+        """
         self._paused_ns = stamp_ns
+        self._give_up([future for future, (client, _) in self._pending.items() if client is self._pausing])
 
         def answered(response: SetBool.Response) -> None:
             if response.success:
@@ -110,11 +114,17 @@ class Requests:
     def expire(self) -> None:
         """Give up what was not answered in time."""
         now = time.monotonic()
-        for future, (client, deadline) in list(self._pending.items()):
-            if now > deadline:
-                del self._pending[future]
-                client.remove_pending_request(future)
-                self._tell(f'No answer from {client.service_name} within {ANSWER_WITHIN:.0f} s.')
+        for client in self._give_up([future for future, (_, deadline) in self._pending.items() if now > deadline]):
+            self._tell(f'No answer from {client.service_name} within {ANSWER_WITHIN:.0f} s.')
+
+    def _give_up(self, futures: list[Future]) -> list[Client]:
+        """Take no answer any more; whose they would have been."""
+        clients = []
+        for future in futures:
+            client, _ = self._pending.pop(future)
+            client.remove_pending_request(future)
+            clients.append(client)
+        return clients
 
     def _call(self, client: Client, request: object, answered: Callable, hint: str) -> None:
         if any(pending is client for pending, _ in self._pending.values()):
