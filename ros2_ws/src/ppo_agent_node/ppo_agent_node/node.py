@@ -17,10 +17,10 @@
 Takes /ball, /joint_states_throttle, /human/applied_wrench, /agent/applied_wrench, /target_wrench and /human/verdict,
 publishes /agent/target_wrench and /training/*, rests and resets the simulator between episodes. Services (Trigger):
 learner/start: end the practice; learner/repeat: start the episode over; learner/finish: end the teaching after this
-episode; learner/keep_teaching: take that back.
+episode, begun anew if it is void; learner/keep_teaching: take that back.
 
 A verdict is about the last episode that has ended. An episode of teaching that is discarded before the next one begins
-is unlearned and taught again; later it is only labelled.
+is unlearned and taught again, unless the teaching is to end; later it is only labelled.
 """
 
 import json
@@ -135,7 +135,8 @@ class PpoAgentNode(Callbacks):
         self._seconds_left = minutes * 60.0 - (self._table.taught_seconds if self._table else 0.0)
         self._practice = Practice(self._learner.task, rests, practice_minutes * 60.0)
         self._episode: Episode | None = None
-        self._finish = False
+        self._last_episode: int | None = None
+        """With which the teaching ends, because somebody has asked for that; 0: at once; None: nobody has."""
         self._repeat = False
         self._void = 0
         """Episodes in a row that were void, and not because the person wanted it."""
@@ -211,13 +212,13 @@ class PpoAgentNode(Callbacks):
             return
         env = SharedControlEnv(self._plant, self._learner.task, human_only=True)
         hands_off = np.zeros(len(env.task.axes), np.float32)
-        while self._practises and not self._finish:
+        while self._practises and self._last_episode is None:
             self._training.enter('practice')
             try:
                 env.reset()
                 self._practice.begin()
                 is_over = False
-                while self._practises and not self._finish and not is_over:
+                while self._practises and self._last_episode is None and not is_over:
                     info = env.step(hands_off)[-1]
                     at_rest = self._practice.step(info['state'].position_error)
                     is_over = info['failed'] or (at_rest and self._practice.wanted > 0)
@@ -285,16 +286,24 @@ class PpoAgentNode(Callbacks):
         return response
 
     def _on_keep_teaching(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success = self._finish and self._training.phase in ('teach', 'learn', 'wait')
-        self._finish = self._finish and not response.success
+        response.success = self._last_episode is not None and self._training.phase in ('teach', 'learn', 'wait')
+        if response.success:
+            self._last_episode = None
         response.message = 'the teaching goes on' if response.success else 'the teaching was not to end, or has ended'
         return response
 
     def _on_finish(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._finish = True
         response.success = self._teaches
-        response.message = (
-            'the teaching ends with this episode' if self._teaches else 'nothing is taught: the mode is test')
+        if not self._teaches:
+            response.message = 'nothing is taught: the mode is test'
+        elif self._training.phase in ('test', 'done'):
+            response.message = 'the teaching has ended'
+        elif self._episode is not None or self._training.phase == 'teach':  # void, it is about to begin anew
+            self._last_episode = self._learner.episode + 1
+            response.message = 'the teaching ends with this episode'
+        else:
+            self._last_episode = 0
+            response.message = 'the teaching ends'
         return response
 
     # -- callbacks of learning and testing ---------------------------------------------------------------------------
@@ -302,7 +311,13 @@ class PpoAgentNode(Callbacks):
     def should_stop(self) -> bool:
         """See :class:`Callbacks`."""
         self._attend()
-        return self._finish or self._seconds_left <= 0.0
+        return self._is_taught
+
+    @property
+    def _is_taught(self) -> bool:
+        """Whether the teaching is over. A last episode that was void has not been learned from, and begins anew."""
+        asked = self._last_episode is not None and self._learner.episode >= self._last_episode
+        return asked or self._seconds_left <= 0.0
 
     def episode_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
@@ -342,6 +357,8 @@ class PpoAgentNode(Callbacks):
             self._table.append(episode)  # before the learner: a row too many is dropped on resuming
             self._kept.learned(self._learner)
         self._episode = None
+        if self._last_episode is not None:
+            self._last_episode = 0  # it was this one, also when it is discarded now
         self._seconds_left -= len(episode) * POLICY_PERIOD + episode.learn_seconds
         self.node.get_logger().info(
             f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '
@@ -358,9 +375,9 @@ class PpoAgentNode(Callbacks):
             if self._learner.episode:
                 save_policy(self._learner, self._policy_path)
             else:
-                # As before the first episode: a learner that has learned nothing is none.
-                self._policy_path.unlink(missing_ok=True)
-        self.node.get_logger().info(f'episode {episode.number} is discarded: it is unlearned, and taught again')
+                self._policy_path.unlink(missing_ok=True)  # a learner that has learned nothing is none
+        again = '' if self._is_taught else ', and taught again'
+        self.node.get_logger().info(f'episode {episode.number} is discarded: it is unlearned{again}')
 
     def episode_tested(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""

@@ -46,6 +46,18 @@ def phases(observer):
     return lambda: [m.data for m in messages]
 
 
+@pytest.fixture
+def finish(observer):
+    """``finish()``: call learner/finish, known before it is needed in a moment that is short; the answer."""
+    client = observer.node.create_client(Trigger, contract.FINISH_SERVICE)
+
+    def call():
+        future = client.call_async(Trigger.Request())
+        observer.spin(future.done, what='the learner answers')
+        return future.result().message
+    return call
+
+
 def exit_code(observer, node, timeout=EPISODE_TIMEOUT):
     observer.spin(lambda: node.process.poll() is not None, timeout, f'the agent ends:\n{node.log()}')
     return node.process.returncode
@@ -90,11 +102,12 @@ def test_says_what_to_do_when_episodes_are_void_again_and_again(graph, start_nod
     assert 'end other programs' in agent.log() and 'shared-control doctor' in agent.log()
 
 
-def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, output):
-    """Simulator killed in mid-episode, a pause by a person, learner/finish, agent killed, resumed, told to leave."""
+def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, finish, output):
+    """Learner/finish, simulator killed in mid-episode, a pause by a person, agent killed, resumed, told to leave."""
     left, reports = observer.listen(contract.TIME_LEFT), observer.listen(contract.DIAGNOSTICS)
     agent = start_node('ppo_agent_node', output=output, episode_seconds=5.0)
     observer.spin(lambda: left and left[-1].data < 4.5, 120.0, 'an episode is under way')
+    assert finish() == 'the teaching ends with this episode'
     graph.process.kill()
     graph.process.wait()
     start_node('panda_sim_node')
@@ -104,9 +117,8 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=True))
     observer.spin_for(1.5)
     observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=False))
-    assert observer.call(Trigger, contract.FINISH_SERVICE, Trigger.Request()).success
     assert exit_code(observer, agent) == 0, agent.log()
-    assert phases() == ['wait', 'teach', 'wait', 'teach', 'learn', 'done'], agent.log()
+    assert phases() == ['wait', 'teach', 'wait', 'teach', 'learn', 'done'], 'its last episode was not void'
     assert agent.log().count('the episode is void') == 1
     assert any(r.status[0].name == '/ppo_agent_node' for r in reports)
     assert read_description(output / 'policy.safetensors')['episode'] == 1
@@ -135,7 +147,8 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert [float(r['seconds']) >= at_least for r, at_least in zip(rows[2:], (1.0, 0.5), strict=True)] == [True, True]
 
 
-def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again(graph, start_node, observer, output):
+def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again(
+        graph, start_node, observer, finish, output):
     heard = {topic.name: observer.listen(topic) for topic in (contract.VERDICT, contract.EPISODE)}
 
     def verdicts():
@@ -158,11 +171,16 @@ def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again
     agent = start_node('ppo_agent_node', **parameters)
     observer.spin(lambda: len(verdicts()) == 6, EPISODE_TIMEOUT, 'it ends after the kill, which has not kept it')
     say.publish(String(data='success'))
-    assert exit_code(observer, agent) == 0, agent.log()
-    assert verdicts() == [('teach 1', word) for word in ('', 'failure', 'discard', '', 'discard', '', 'success')]
-    assert {message.data for message in heard[contract.EPISODE.name]} == {1}
-    assert rows() == [('1', 'discard'), ('1', 'discard'), ('1', 'success')]
+    observer.spin(lambda: rows() == [('1', 'discard'), ('1', 'discard'), ('1', 'success')])
     assert load_policy(output / 'policy.safetensors').episode == 1
+    assert finish() == 'the teaching ends'
+    say.publish(String(data='discard'))
+    assert exit_code(observer, agent) == 0, agent.log()
+    assert 'episode 1 is discarded: it is unlearned' in agent.log() and 'taught again' not in agent.log()
+    assert verdicts() == [('teach 1', word) for word in (
+        '', 'failure', 'discard', '', 'discard', '', 'success', 'discard')]
+    assert {message.data for message in heard[contract.EPISODE.name]} == {1}
+    assert rows() == [('1', 'discard')] * 3 and not (output / 'policy.safetensors').exists()
 
 
 @pytest.mark.parametrize(('parameters', 'words'), [

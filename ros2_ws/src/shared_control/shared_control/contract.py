@@ -164,7 +164,8 @@ SEED = Service(
 LEARNER_START = Service('learner/start', _TRIGGER, 'agent', 'end the practice, teach')
 LEARNER_REPEAT = Service('learner/repeat', _TRIGGER, 'agent', 'the episode is void: start it over, with the same ball')
 LEARNER_FINISH = Service(
-    'learner/finish', _TRIGGER, 'agent', 'end the teaching after this episode; then test, and leave')
+    'learner/finish', _TRIGGER, 'agent',
+    'end the teaching after this episode, begun anew if it is void; then test, and leave')
 LEARNER_KEEP_TEACHING = Service(
     'learner/keep_teaching', _TRIGGER, 'agent', 'take `learner/finish` back, while the episode lasts')
 CONTROLLER_ENABLE = Service('controller/enable', _SET_BOOL, 'controller', 'send torques, or none')

@@ -18,8 +18,10 @@ import pytest
 from shared_control_ros import contract
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Observer
+from shared_control_ros.watching.requests import Requests
 from shared_control_ros.watching.scene import Scene
 from std_msgs.msg import Float64, Int32, String
+from std_srvs.srv import Trigger
 
 BREAK = (2.9, 2.8)
 
@@ -120,3 +122,22 @@ def test_who_comes_in_the_middle_of_an_episode_takes_the_length_of_the_task(agen
     late = agent.new_screen()
     assert agent.shown(late, phase='teach', time_left=2.3).episode_seconds == 15.0
     assert agent.shown(phase='teach', time_left=2.3).episode_seconds == 3.0
+
+
+def test_the_end_that_was_asked_for_is_shown_until_the_teaching_is_over(observer):
+    requests = Requests(observer.node, lambda _: None)
+    observer.node.create_service(Trigger, contract.FINISH_SERVICE, lambda _, response: Trigger.Response(success=True))
+    observer.node.create_service(Trigger, contract.KEEP_TEACHING_SERVICE, lambda _, response: response)  # refuses
+
+    def ask(to, what):
+        observer.spin(lambda: to() or requests.is_pending, what='the learner is there')
+        observer.spin(lambda: not requests.is_pending, what=what)
+    ask(requests.finish, 'it ends')
+    for phase in ('teach', 'wait', 'teach', 'learn', None):
+        requests.follow(phase, 0)
+        assert requests.ending, 'a void episode begins anew after a while'
+    ask(requests.keep_teaching, 'it has been started anew, and was not to end')
+    assert not requests.ending
+    ask(requests.finish, 'it ends')
+    requests.follow('test', 0)
+    assert not requests.ending

@@ -74,7 +74,7 @@ class Requests:
         """Take :meth:`finish` back."""
         def answered(response: Trigger.Response) -> None:
             self._tell(response.message)
-            self.ending = self.ending and not response.success
+            self.ending = False  # a learner that refuses this was not to end
         self._call(self._keep_teaching, Trigger.Request(), answered, HINT)
 
     def start(self) -> None:
@@ -108,7 +108,7 @@ class Requests:
         """
         if not self._pause.is_reported and stamp_ns > self._paused_ns + RUNS_AGAIN_NS:
             self._pause.is_on = False
-        if phase not in (None, 'teach', 'learn'):
+        if phase not in (None, 'teach', 'learn', 'wait'):  # a last episode that is void begins anew
             self.ending = False
 
     def expire(self) -> None:
