@@ -58,6 +58,7 @@ from std_srvs.srv import Trigger
 
 from .graph_plant import GraphPlant
 from .kept_policy import KeptPolicy
+from .last_episode import LAST_EPISODE_NAME, LastEpisode
 from .training_topics import TrainingTopics
 from .verdicts import Verdicts
 
@@ -135,8 +136,7 @@ class PpoAgentNode(Callbacks):
         self._seconds_left = minutes * 60.0 - (self._table.taught_seconds if self._table else 0.0)
         self._practice = Practice(self._learner.task, rests, practice_minutes * 60.0)
         self._episode: Episode | None = None
-        self._last_episode: int | None = None
-        """With which the teaching ends, because somebody has asked for that; 0: at once; None: nobody has."""
+        self._last = self._last_episode(output, minutes)
         self._repeat = False
         self._void = 0
         """Episodes in a row that were void, and not because the person wanted it."""
@@ -183,6 +183,18 @@ class PpoAgentNode(Callbacks):
             raise ParameterError(f"parameter 'resume' is true, but there is no {POLICY_NAME} in output ({output!r})")
         return learner
 
+    def _last_episode(self, output: str, minutes: float) -> LastEpisode:
+        """What an agent that was killed has been told."""
+        path = Path(output) / LAST_EPISODE_NAME if output and self._teaches else None
+        try:
+            last = LastEpisode(path, {'episodes': self._episodes, 'max_minutes': minutes})
+        except ValueError as error:
+            raise ParameterError(f"parameter 'output': {error}") from error
+        if last.number is not None:
+            end = 'is over' if last.is_learned(self._learner.episode) else f'ends with episode {last.number}'
+            self.node.get_logger().info(f'the teaching {end}, as somebody has asked; to go on with it, remove {path}')
+        return last
+
     # -- running -----------------------------------------------------------------------------------------------------
 
     def run(self, stop: Stop) -> None:
@@ -198,6 +210,7 @@ class PpoAgentNode(Callbacks):
             if self._test_episodes:
                 self._test()
             self._training.enter('done')
+            self._last.forget()
         except _Stopped:
             self._break_off('the session was stopped')
             self.node.get_logger().info(f'stopped; {self._learner.episode} episodes are learned and kept')
@@ -212,13 +225,13 @@ class PpoAgentNode(Callbacks):
             return
         env = SharedControlEnv(self._plant, self._learner.task, human_only=True)
         hands_off = np.zeros(len(env.task.axes), np.float32)
-        while self._practises and self._last_episode is None:
+        while self._practises and self._last.number is None:
             self._training.enter('practice')
             try:
                 env.reset()
                 self._practice.begin()
                 is_over = False
-                while self._practises and self._last_episode is None and not is_over:
+                while self._practises and self._last.number is None and not is_over:
                     info = env.step(hands_off)[-1]
                     at_rest = self._practice.step(info['state'].position_error)
                     is_over = info['failed'] or (at_rest and self._practice.wanted > 0)
@@ -286,9 +299,9 @@ class PpoAgentNode(Callbacks):
         return response
 
     def _on_keep_teaching(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success = self._last_episode is not None and self._training.phase in ('teach', 'learn', 'wait')
+        response.success = self._last.number is not None and self._training.phase in ('teach', 'learn', 'wait')
         if response.success:
-            self._last_episode = None
+            self._last.forget()
         response.message = 'the teaching goes on' if response.success else 'the teaching was not to end, or has ended'
         return response
 
@@ -299,10 +312,10 @@ class PpoAgentNode(Callbacks):
         elif self._training.phase in ('test', 'done'):
             response.message = 'the teaching has ended'
         elif self._episode is not None or self._training.phase == 'teach':  # void, it is about to begin anew
-            self._last_episode = self._learner.episode + 1
+            self._last.set(self._learner.episode + 1)
             response.message = 'the teaching ends with this episode'
         else:
-            self._last_episode = 0
+            self._last.set(0)
             response.message = 'the teaching ends'
         return response
 
@@ -316,8 +329,7 @@ class PpoAgentNode(Callbacks):
     @property
     def _is_taught(self) -> bool:
         """Whether the teaching is over. A last episode that was void has not been learned from, and begins anew."""
-        asked = self._last_episode is not None and self._learner.episode >= self._last_episode
-        return asked or self._seconds_left <= 0.0
+        return self._last.is_learned(self._learner.episode) or self._seconds_left <= 0.0
 
     def episode_started(self, episode: Episode) -> None:
         """See :class:`Callbacks`."""
@@ -357,8 +369,8 @@ class PpoAgentNode(Callbacks):
             self._table.append(episode)  # before the learner: a row too many is dropped on resuming
             self._kept.learned(self._learner)
         self._episode = None
-        if self._last_episode is not None:
-            self._last_episode = 0  # it was this one, also when it is discarded now
+        if self._last.number is not None:
+            self._last.set(0)  # it was this one, also when it is discarded now
         self._seconds_left -= len(episode) * POLICY_PERIOD + episode.learn_seconds
         self.node.get_logger().info(
             f'episode {episode.number}: return {episode.episode_return:.1f}, human share {episode.human_share:.0%}, '

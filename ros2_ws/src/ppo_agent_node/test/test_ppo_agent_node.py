@@ -17,6 +17,7 @@
 import signal
 
 import pytest
+from ppo_agent_node.last_episode import LAST_EPISODE_NAME, LastEpisode
 from ppo_agent_node.node import VOID_IN_A_ROW
 from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import load_policy, read_description
@@ -48,7 +49,7 @@ def phases(observer):
 
 @pytest.fixture
 def finish(observer):
-    """``finish()``: call learner/finish, known before it is needed in a moment that is short; the answer."""
+    """``finish()``: call learner/finish, known before it is needed, in an episode that is short; the answer."""
     client = observer.node.create_client(Trigger, contract.FINISH_SERVICE)
 
     def call():
@@ -131,6 +132,7 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     killed = start_node('ppo_agent_node', output=output, episode_seconds=5.0)
     killed.wait_for_log('going on after episode 1', 120.0)
     observer.spin(lambda: left and left[-1].data < 3.9, 120.0)
+    finish()
     killed.stop(signal.SIGKILL)
 
     wrenches = observer.listen(contract.AGENT_WRENCH)
@@ -140,6 +142,8 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert resumed.stop(signal.SIGTERM) == 0
     observer.spin(lambda: wrenches[-1].wrench.torque.y == 0.0, what='a last moment of zero')
     assert 'stopped; 1 episodes are learned and kept' in resumed.log()
+    assert 'going on after episode 1' in killed.log() and 'the teaching' not in killed.log(), 'all was done before'
+    assert 'the teaching ends with episode 2, as somebody has asked; to go on with it, remove' in resumed.log()
     rows = read_rows(output / 'episodes.csv')
     assert [(r['episode'], r['phase']) for r in rows] == [
         ('1', BROKEN_OFF), ('1', 'teach'), ('2', BROKEN_OFF), ('2', BROKEN_OFF)]
@@ -147,8 +151,7 @@ def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, 
     assert [float(r['seconds']) >= at_least for r, at_least in zip(rows[2:], (1.0, 0.5), strict=True)] == [True, True]
 
 
-def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again(
-        graph, start_node, observer, finish, output):
+def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again(graph, start_node, observer, output):
     heard = {topic.name: observer.listen(topic) for topic in (contract.VERDICT, contract.EPISODE)}
 
     def verdicts():
@@ -168,19 +171,22 @@ def test_an_episode_that_is_discarded_in_the_break_is_unlearned_and_taught_again
     say.publish(String(data='discard'))
     observer.spin(lambda: rows() == [('1', 'discard')] * 2, what='it is discarded again')
     agent.stop(signal.SIGKILL)
+    LastEpisode(output / LAST_EPISODE_NAME, {'episodes': 1, 'max_minutes': 45.0}).set(1)
     agent = start_node('ppo_agent_node', **parameters)
     observer.spin(lambda: len(verdicts()) == 6, EPISODE_TIMEOUT, 'it ends after the kill, which has not kept it')
     say.publish(String(data='success'))
-    observer.spin(lambda: rows() == [('1', 'discard'), ('1', 'discard'), ('1', 'success')])
-    assert load_policy(output / 'policy.safetensors').episode == 1
-    assert finish() == 'the teaching ends'
+    policy = output / 'policy.safetensors'
+    good = [('1', 'discard'), ('1', 'discard'), ('1', 'success')]
+    observer.spin(lambda: policy.exists() and rows() == good, what='it is learned and judged')
+    assert load_policy(policy).episode == 1
     say.publish(String(data='discard'))
     assert exit_code(observer, agent) == 0, agent.log()
     assert 'episode 1 is discarded: it is unlearned' in agent.log() and 'taught again' not in agent.log()
     assert verdicts() == [('teach 1', word) for word in (
         '', 'failure', 'discard', '', 'discard', '', 'success', 'discard')]
     assert {message.data for message in heard[contract.EPISODE.name]} == {1}
-    assert rows() == [('1', 'discard')] * 3 and not (output / 'policy.safetensors').exists()
+    assert rows() == [('1', 'discard')] * 3 and not policy.exists()
+    assert not (output / LAST_EPISODE_NAME).exists(), 'all is done'
 
 
 @pytest.mark.parametrize(('parameters', 'words'), [

@@ -89,6 +89,8 @@ def run(args: argparse.Namespace) -> int:
         else:
             folder = earlier
             folder.claim()
+            if not set(given_settings(args)) <= {'test_episodes'}:
+                folder.last_episode.unlink(missing_ok=True)  # whoever asks for something else wants it to go on
         ros_parameters.save(parameters, folder.parameters)
         print('The session begins.' if settings.blind else
               f'Session in {folder.path}: {settings.task}, {settings.preset}, tutor: {settings.teacher}.', flush=True)

@@ -284,6 +284,18 @@ def test_a_session_that_is_taught_goes_on_with_its_test_alone(session, tmp_path,
     assert session.taught == 4
 
 
+def test_who_asks_a_session_for_something_else_goes_on_teaching(session, tmp_path):
+    folder = SessionFolder(tmp_path / 'session')
+    session.end = End.STOPPED
+    assert session('--tutor', 'sim', '--output', folder.path) == 130
+    folder.last_episode.write_text('{}')
+    for same in ([], ['--test-episodes', 3]):
+        session('--resume', folder.path, *same)
+        assert folder.last_episode.exists(), 'the agent goes by it'
+    session('--resume', folder.path, '--minutes', 60)
+    assert not folder.last_episode.exists()
+
+
 def test_a_session_that_is_not_to_be_tested_goes_on_with_its_teaching(session, tmp_path):
     folder = SessionFolder(tmp_path / 'session')
     assert session('--tutor', 'sim', '--test-episodes', 0, '--output', folder.path) == 0

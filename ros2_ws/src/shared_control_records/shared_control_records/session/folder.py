@@ -25,8 +25,8 @@ from shared_control.run_folder import RunFolder, RunFolderError
 
 _OF_THE_NODES = (
     'bag/bag_*.mcap', 'bag/bag_*.mcap.tmp', 'bag/metadata.yaml', 'bag/metadata.yaml.tmp',
-    'learner/episodes.csv', 'learner/unfinished.csv', 'learner/practice.json', 'learner/policy.safetensors',
-    'learner/policy.json', 'log/*.log')
+    'learner/episodes.csv', 'learner/unfinished.csv', 'learner/last_episode.json', 'learner/practice.json',
+    'learner/policy.safetensors', 'learner/policy.json', 'log/*.log')
 """What recorder, learner and nodes write. Their modules take seconds to load, so the names stand here once more."""
 
 
@@ -45,6 +45,8 @@ class SessionFolder(RunFolder):
         """The agent's own folder."""
         self.episodes = self.learner / 'episodes.csv'
         """One row an episode."""
+        self.last_episode = self.learner / 'last_episode.json'
+        """The end of the teaching that somebody has asked for; there until the agent has done all."""
         self.policy = self.learner / 'policy.safetensors'
         """The learner, to go on with or to test."""
         self.parameters = path / 'parameters.yaml'
