@@ -25,9 +25,14 @@ class Interrupts:
     """While it is entered, none of the signals ends this process, however many of them come."""
 
     def __init__(self) -> None:
-        self.requested = False
-        """Whether one has come."""
+        self.count = 0
+        """How many have come."""
         self._previous: dict[int, Any] = {}
+
+    @property
+    def requested(self) -> bool:
+        """Whether one has come."""
+        return self.count > 0
 
     def check(self) -> None:
         """Call where the work can stop.
@@ -49,4 +54,4 @@ class Interrupts:
             signal.signal(number, handler)
 
     def _note(self, _number: int, _frame: FrameType | None) -> None:
-        self.requested = True
+        self.count += 1

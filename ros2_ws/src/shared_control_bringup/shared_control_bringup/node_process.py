@@ -115,6 +115,11 @@ class NodeProcess:
         assert self._process is not None, f'{self.name} was never started'
         return self._process.pid
 
+    @property
+    def log_name(self) -> str:
+        """Where its log is in the session's folder, whose own path is nobody's business: this is recorded, or shown."""
+        return f'{self.log.parent.name}/{self.log.name}'
+
     def _prepare(self) -> None:
         """In the new process: a core for the control loop, the others for everybody else.
 
@@ -201,16 +206,28 @@ class NodeProcess:
         except (OSError, IndexError):
             return ''
 
+    def cpu_seconds(self) -> float:
+        """How much it has computed, s; 0 when it has ended."""
+        try:
+            content = Path(f'/proc/{self.pid}/stat').read_text(encoding='utf-8')
+            return sum(map(int, content.rpartition(')')[2].split()[11:13])) / os.sysconf('SC_CLK_TCK')
+        except (OSError, ValueError):
+            return 0.0
+
+    def has_left(self, seconds: float | None) -> bool:
+        """Wait for it to leave, so long at the most; whether it has."""
+        if self._process is None:
+            return True
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(seconds)
+            self._is_starting = False
+        return self.exit_code() is not None
+
     def wait(self, seconds: float) -> None:
         """Wait for it to leave; end it by force when it does not."""
-        if self._process is None:
-            return
-        try:
-            self._process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        self._is_starting = False
+        if not self.has_left(seconds):
+            self.kill()
+            self.has_left(None)
 
     def newest_warning(self) -> tuple[float, str] | None:
         """The newest warning or error since its start, if not long ago: when, s of the time of the day, and text."""

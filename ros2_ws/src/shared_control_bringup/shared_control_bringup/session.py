@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from shared_control.files import write_atomically
+from shared_control_learning.episode_table import keep_unfinished
 from shared_control_records.bag import annotate, recover
 from shared_control_records.bag.task import RECORD
 from shared_control_records.session import bag_metadata
@@ -40,7 +41,7 @@ from .options import given_settings, refuse_options_of_new_sessions
 from .page import TOKEN, Page
 from .parameter_check import check_values, refuse_overridden
 from .settings import EPISODES_OF_SIMULATED, Settings
-from .supervisor import STOP_SECONDS
+from .supervisor import STOP_SECONDS, end_by_force
 from .teaching import POLL_SECONDS, End, teach
 from .terminal import restored_terminal
 
@@ -106,7 +107,8 @@ def run(args: argparse.Namespace) -> int:
         finally:
             if page_node is not None:
                 page_node.interrupt()
-                page_node.wait(STOP_SECONDS)
+                if not page_node.has_left(STOP_SECONDS):
+                    end_by_force(page_node, print)
             folder.ending.unlink(missing_ok=True)
         return end.value
 
@@ -211,6 +213,7 @@ def _report(folder: SessionFolder, end: End, restarts: int, settings: Settings, 
             end = End.STOPPED
     tell_page(folder, 'reporting')
     print('Writing the report ...', flush=True)
+    keep_unfinished(folder.episodes)
     _complete_bag(folder, restarts)
     summary = write_report(folder, restarts)
     if not settings.blind:

@@ -30,7 +30,11 @@ HEALTHY_SECONDS = 20.0
 READY_SECONDS = 60.0
 """Until the first ready or not, all nodes together, s: a busy machine takes long to import torch."""
 START_POLL_SECONDS = 0.02
+STOP_POLL_SECONDS = 0.1
 STOP_SECONDS = 10.0
+"""How long a node may take to leave, s."""
+COMPUTES = 0.1
+"""A process computes as long as it has a core for this share of the time, on however busy a machine."""
 
 
 class SessionError(RuntimeError):
@@ -115,18 +119,50 @@ class Supervisor:
         self._say(f'{node.name} died ({_meaning(code)}); starting it again')
         node.start()
 
-    def stop(self, but: str = '') -> None:
-        """Stop the nodes, the last one started first, and wait for each; leave the one called ``but`` alone."""
+    def stop(self, but: str = '', say: Callable[[str], None] = print, learns: Callable[[], bool] = lambda: False,
+             asked: Callable[[], int] = lambda: 0) -> None:
+        """Stop the nodes, the last one started first, and wait for each; leave the one called ``but`` alone.
+
+        Args:
+            say: told what is waited for, and what does not leave.
+            learns: whether the leader learns from an episode: as long as it computes, it is waited for.
+            asked: how often somebody has asked to stop; who asks again does not want to wait for that.
+        """
         for node in reversed(self._nodes):
             if node.name == but:
                 continue
             node.interrupt()
-            node.wait(STOP_SECONDS)
+            if node.has_left(STOP_SECONDS) or (
+                    node.name == self._leader and learns() and _has_learned(node, say, asked)):
+                continue
+            end_by_force(node, say)
 
     @property
     def restarts(self) -> int:
         """How often a node was started again."""
         return sum(max(node.starts - 1, 0) for node in self._nodes)
+
+
+def _has_learned(node: NodeProcess, say: Callable[[str], None], asked: Callable[[], int]) -> bool:
+    """Let it finish what it computes: an episode has taken a person's time; whether it has left."""
+    say(f'{node.name} still learns from the last episode, and is waited for; Ctrl-C again ends it, and that episode is '
+        'lost')
+    before, used, since = asked(), node.cpu_seconds(), time.monotonic()
+    while asked() == before:
+        if node.has_left(STOP_POLL_SECONDS):
+            return True
+        if time.monotonic() - since > STOP_SECONDS:
+            if node.cpu_seconds() - used < COMPUTES * STOP_SECONDS:
+                return False
+            used, since = node.cpu_seconds(), time.monotonic()
+    return False
+
+
+def end_by_force(node: NodeProcess, say: Callable[[str], None]) -> None:
+    """End a node that does not leave, and say so."""
+    say(f'{node.name} did not leave when it was asked to, and is ended by force; see {node.log_name}')
+    node.kill()
+    node.has_left(None)
 
 
 def _require_usable(node: NodeProcess) -> None:

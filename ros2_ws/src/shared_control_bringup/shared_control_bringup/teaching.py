@@ -68,10 +68,11 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     def note(text: str) -> None:
         print(time.strftime('%H:%M:%S'), text, file=log, flush=True)
 
-    def say(text: str) -> None:
+    def tell(text: str) -> None:
         note(text)
-        if not shows_screen:
-            print(text, flush=True)
+        print(text, flush=True)
+
+    say = note if shows_screen else tell
 
     (leader,), (stopper,) = named(Role.LEADER), named(Role.STOPPER)
     episodes = EpisodePrinter(folder.episodes, note if blind else say)
@@ -109,9 +110,9 @@ def teach(folder: SessionFolder, tutor: str, shows_screen: bool, page: Page | No
     except SessionError as problem:
         end, error = End.FAILED, problem
     finally:
-        waits.close()
         stays = stopper if page and end is End.DONE else ''
-        supervisor.stop(but=stays)
+        supervisor.stop(but=stays, say=tell, learns=waits.learns, asked=lambda: interrupts.count)
+        waits.close()
         episodes.poll()
         log.close()
     if error is not None:

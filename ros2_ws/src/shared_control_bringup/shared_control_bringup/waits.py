@@ -141,6 +141,10 @@ class Waits:
             self._graph.publish(text)
             self._graph.report(now, '' if self._wait is None or not self._stands_still else self._wait.what)
 
+    def learns(self) -> bool:
+        """Whether the robot learns from an episode at this moment."""
+        return self._graph is not None and self._graph.look(time.monotonic()).phase == 'learn'
+
     def close(self) -> None:
         """Leave the graph."""
         if self._graph is not None:
@@ -161,7 +165,7 @@ class Waits:
             since = reported.get(node.name, 0.0)
             if since > node.started and now - since > STANDSTILL and node.exit_code() is None and not learns:
                 held_by = node.held_by()
-                standing_still.append((node.name, held_by or f'see the end of {_log_of(node)}'))
+                standing_still.append((node.name, held_by or f'see the end of {node.log_name}'))
                 if held_by:
                     self._held[node.pid] = now
                 self._end_standstill(node, now - max(since, self._held.get(node.pid, 0.0)))
@@ -174,7 +178,7 @@ class Waits:
             self._questioned.add(node.pid)
             node.write_traceback()
         elif seconds > ENDED_AFTER:
-            self._say(f'{node.name} has stood still for {seconds:.0f} s: it is ended; {_log_of(node)} has where it '
+            self._say(f'{node.name} has stood still for {seconds:.0f} s: it is ended; {node.log_name} has where it '
                       'stood')
             node.kill()
 
@@ -191,11 +195,6 @@ class Waits:
         found = [(*warning, node.name) for node in self._nodes
                  if node.name in names and (warning := node.newest_warning())]
         return f'{max(found)[2]}: {max(found)[1]}' if found else ''
-
-
-def _log_of(node: NodeProcess) -> str:
-    """Where its log is in the session's folder, whose own path is nobody's business: this is recorded."""
-    return f'{node.log.parent.name}/{node.log.name}'
 
 
 class _Graph:

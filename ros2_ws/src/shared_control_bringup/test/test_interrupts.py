@@ -30,6 +30,7 @@ def test_signals_are_noted_however_many_come(number):
             os.kill(os.getpid(), number)
         with pytest.raises(KeyboardInterrupt):
             interrupts.check()
+        assert interrupts.count == 3 and interrupts.requested
     assert {number: signal.getsignal(number) for number in SIGNALS} == before
 
 

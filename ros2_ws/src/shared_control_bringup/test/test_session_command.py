@@ -31,6 +31,7 @@ from shared_control_bringup.page import Page
 from shared_control_bringup.parameters import DEFAULTS, load
 from shared_control_bringup.settings import Settings
 from shared_control_bringup.teaching import End
+from shared_control_learning.episode_table import UNFINISHED_NAME
 from shared_control_records.session.final_test import sha256
 from shared_control_records.session.folder import SessionFolder
 from shared_control_testing.sessions import lesson, record
@@ -308,10 +309,14 @@ def test_a_session_that_is_not_to_be_tested_goes_on_with_its_teaching(session, t
 def test_a_session_in_which_nothing_was_learned_has_a_report(tmp_path, capsys):
     folder = SessionFolder(tmp_path / 'session')
     record([lesson()]).write(folder.bag)
+    folder.learner.mkdir()
+    folder.episodes.with_name(UNFINISHED_NAME).write_text(
+        'episode,phase,seconds,return,fallen,human_share\n1,broken off,4.0,-1.0,0,0.5\n')  # the learner was killed
     folder.write_settings((settings := Settings(tutor='sim', test_episodes=20)).to_json())
     assert command._conclude(folder, End.DONE, 0, settings, Interrupts()) is End.DONE
     assert 'No episode was learned' in capsys.readouterr().out
     assert folder.report.exists() and not folder.test.exists()
+    assert json.loads(folder.summary.read_text())['episodes_broken_off'] == 1
 
 
 def test_a_disk_that_is_full_after_the_teaching_is_said_with_the_way_to_go_on(session, tmp_path, monkeypatch, capsys):

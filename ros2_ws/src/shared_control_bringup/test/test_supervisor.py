@@ -23,6 +23,7 @@ from pathlib import Path
 
 import pytest
 from shared_control_bringup import node_process, parameters
+from shared_control_bringup import supervisor as supervising
 from shared_control_bringup.node_process import NodeProcess
 from shared_control_bringup.supervisor import SessionError, Supervisor
 
@@ -167,6 +168,79 @@ def test_a_leader_that_has_done_all_is_not_started_again_for_how_it_leaves(domai
     finally:
         supervisor.stop()
     assert bool(said) is not finished
+
+
+COMPUTES, SLEEPS = 'while not done.exists(): pass', 'time.sleep(60.0)'
+STAYS = """
+import os, signal, time
+from pathlib import Path
+from shared_control_ros.readiness import READY, ReadyPipe
+
+asked, done = [], Path({done!r})
+signal.signal(signal.SIGINT, lambda *_: asked.append(True))
+ReadyPipe().tell(READY)
+while not asked:
+    time.sleep(0.01)
+{then}
+"""
+
+
+class Stays:
+    """A node that goes on when it is asked to leave, and whoever stops it."""
+
+    def __init__(self, folder, then):
+        self.done, self.said = folder / 'done', []
+        self.node = NodeProcess('ppo_agent_node', folder / 'none.yaml', folder / 'log')
+        self.node._command = [sys.executable, '-c', STAYS.format(done=str(self.done), then=then)]
+        self.supervisor = Supervisor([self.node], 'ppo_agent_node', print)
+        self.supervisor.start()
+
+    def learns(self):
+        """It comes to its end after it was seen to compute."""
+        used = self.node.cpu_seconds()
+        while self.node.cpu_seconds() < used + 0.05:
+            time.sleep(0.01)
+        self.done.touch()
+        return True
+
+
+@pytest.fixture
+def stays(domain_id, tmp_path, monkeypatch):
+    monkeypatch.setattr(supervising, 'STOP_SECONDS', 0.5)
+
+    def start(then):
+        started.append(Stays(tmp_path, then))
+        return started[-1]
+    started = []
+    yield start
+    for one in started:
+        one.node.kill()
+        one.node.wait(60.0)
+
+
+def test_what_a_leader_still_learns_is_waited_for(stays, monkeypatch):
+    monkeypatch.setattr(supervising, 'COMPUTES', 0.0)  # others may want all cores for a while
+    busy = stays(COMPUTES)
+    busy.supervisor.stop(say=busy.said.append, learns=busy.learns)
+    said, = busy.said
+    assert 'ppo_agent_node still learns from the last episode' in said and 'Ctrl-C again ends it' in said
+    assert busy.node.exit_code() == 0 and busy.node.cpu_seconds() == 0.0
+
+
+@pytest.mark.parametrize(('then', 'share', 'learns', 'presses'), [
+    (COMPUTES, 0.0, True, [1, 1, 2]),  # somebody does not want to wait
+    (COMPUTES, 0.0, False, [1]),
+    (SLEEPS, 0.1, True, [1]),  # it does not come to its end
+])
+def test_a_node_that_is_ended_by_force_is_named(stays, monkeypatch, then, share, learns, presses):
+    monkeypatch.setattr(supervising, 'COMPUTES', share)
+    one = stays(then)
+    one.supervisor.stop(say=one.said.append, learns=lambda: learns,
+                        asked=lambda: presses.pop(0) if len(presses) > 1 else presses[0])
+    assert one.node.exit_code() == -signal.SIGKILL
+    *waited, ended = one.said
+    assert ended == f'ppo_agent_node did not leave when it was asked to, and is ended by force; see {one.node.log_name}'
+    assert ['still learns' in text for text in waited] == [True] * learns
 
 
 def test_an_unpaced_loop_shares_all_cores(make_node):

@@ -61,9 +61,7 @@ class EpisodeTable:
             rows = [row if row['phase'] == BROKEN_OFF or int(row['episode']) <= taught or _is_discarded(row)
                     else {**row, 'phase': BROKEN_OFF, 'reason': KILLED}
                     for row in before if row['phase'] in ('teach', BROKEN_OFF)]
-            rows += [row for row in read_rows(self._unfinished) if not _is_same(row, before[-1:]) and not any(
-                other['phase'] == 'teach' and other['episode'] == row['episode'] and not _is_discarded(other)
-                for other in before)]
+            rows += _missing(path, before)
         rows = [{**{name: value for name, value in row.items() if name not in LATER}, **{
             name: row.get(name, '') for name in LATER}} for row in rows]
         self._has_header = bool(rows)
@@ -73,8 +71,7 @@ class EpisodeTable:
             raise ValueError(f'{path} is no table of episodes: it has no column seconds')
         self.taught_seconds = sum(float(row['seconds']) + float(row.get('learn_seconds', 0.0)) for row in rows)
         """How long the learner was taught before, s: its episodes by the robot's time, and the time of learning."""
-        write_atomically(path, (_csv([list(rows[0])]) + _csv([list(row.values()) for row in rows])).encode()
-                         if rows else b'')
+        _write(path, rows)
         self._unfinished.unlink(missing_ok=True)
 
     def append(self, episode: Episode) -> None:
@@ -114,6 +111,31 @@ class EpisodeTable:
         self._has_header = True
         self._unfinished.unlink(missing_ok=True)
         return end
+
+
+def keep_unfinished(path: Path) -> None:
+    """Give an episode its row whose end a killed learner did not see; nothing when there is none.
+
+    Raises:
+        ValueError: a file is no such table; the message names it.
+        OSError: the table cannot be written.
+    """
+    rows = read_rows(path)
+    if missing := _missing(path, rows):
+        _write(path, [*rows, *missing])
+        path.with_name(UNFINISHED_NAME).unlink()
+
+
+def _missing(path: Path, rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """The row of the episode that was under way, if the table has none of it."""
+    return [row for row in read_rows(path.with_name(UNFINISHED_NAME)) if not _is_same(row, rows[-1:]) and not any(
+        other['phase'] == 'teach' and other['episode'] == row['episode'] and not _is_discarded(other)
+        for other in rows)]
+
+
+def _write(path: Path, rows: list[dict[str, str]]) -> None:
+    text = _csv([list(rows[0])]) + _csv([list(row.values()) for row in rows]) if rows else ''
+    write_atomically(path, text.encode())
 
 
 def _is_same(row: dict[str, str], last: list[dict[str, str]]) -> bool:

@@ -18,7 +18,14 @@ import numpy as np
 import pytest
 from shared_control.tasks.balance import BALANCE
 from shared_control_learning.episode import Episode
-from shared_control_learning.episode_table import BROKEN_OFF, UNFINISHED_NAME, EpisodeTable, read_rows
+from shared_control_learning.episode_table import (
+    BROKEN_OFF,
+    KILLED,
+    UNFINISHED_NAME,
+    EpisodeTable,
+    keep_unfinished,
+    read_rows,
+)
 
 TABLE = """episode,phase,seconds,learn_seconds
 1,teach,15.0,0.5
@@ -69,6 +76,21 @@ def test_what_a_person_taught_in_vain_is_kept_and_counts(tmp_path, episode):
     assert kept(path) == [*rows, ('2', BROKEN_OFF, 8.0)] and not (tmp_path / UNFINISHED_NAME).exists()
 
 
+@pytest.mark.parametrize('taught', [0, 1])
+def test_an_episode_whose_end_a_killed_learner_did_not_see_has_its_row_when_the_session_ends(tmp_path, episode, taught):
+    path = tmp_path / 'episodes.csv'
+    keep_unfinished(path)  # there was no episode at all
+    table = EpisodeTable(path, live=True)
+    for number in range(1, taught + 1):
+        table.append(episode(number, 15.0))
+    table.under_way(episode(taught + 1, 8.0))
+    for _ in range(2):
+        keep_unfinished(path)
+        assert kept(path)[taught:] == [(str(taught + 1), BROKEN_OFF, 8.0)]
+    assert read_rows(path)[-1]['reason'] == KILLED and not (tmp_path / UNFINISHED_NAME).exists()
+    assert EpisodeTable(path, taught=taught, live=True).taught_seconds == 15.0 * taught + 8.0
+
+
 @pytest.mark.parametrize('end', ['append', 'break_off'])
 def test_an_episode_that_has_its_row_is_not_kept_twice(tmp_path, episode, end):
     path = tmp_path / 'episodes.csv'
@@ -78,6 +100,8 @@ def test_an_episode_that_has_its_row_is_not_kept_twice(tmp_path, episode, end):
     getattr(table, end)(episode(1, 6.0), *(['stopped'] if end == 'break_off' else []))
     before = kept(path)
     (tmp_path / UNFINISHED_NAME).write_bytes(unfinished)  # killed between the one and the other
+    keep_unfinished(path)
+    assert kept(path) == before
     EpisodeTable(path, taught=1, live=True)
     assert kept(path) == before
 
