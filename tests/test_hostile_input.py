@@ -107,13 +107,13 @@ def test_buttons(states):
 
 @QUICK
 @given(st.lists(st.tuples(st.sampled_from('ab'), st.lists(st.floats(width=32), max_size=4),
-                          st.lists(st.integers(-1, 2), max_size=6), st.integers(0, 2**62))))
+                          st.lists(st.integers(-1, 2), max_size=6), st.integers(0, 2**62), st.floats(0.0, 1e6))))
 def test_what_any_source_of_keys_sends_is_a_moment_within_the_limit(states):
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
-    for source, axes, buttons, now_ns in states:
+    for source, axes, buttons, now_ns, now in states:
         with suppress(ValueError):
-            sources.hear(source, axes, buttons, now_ns)
-        sources.drop_silent(now_ns)
+            sources.hear(source, axes, buttons, now_ns, now)
+        sources.drop_silent(now_ns, now)
         assert np.abs(sources.moment).max() <= HUMAN_MOMENT_LIMIT
 
 
