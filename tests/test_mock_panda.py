@@ -144,6 +144,13 @@ class TestEveryRobot:
         following = np.diff([to_ns(m.header.stamp) for m in robot.states]) == 1_000_000
         assert within_rate[following].all(), '1000 N m/s'
 
+    def test_nobody_else_puts_an_episode_back(self, robot):
+        robot.env.reset(seed=5)
+        refused = robot.call(Trigger, contract.RESET_SERVICE, Trigger.Request())
+        assert not refused.success and '/learner/repeat starts it over' in refused.message
+        robot.env.plant.rest()
+        assert robot.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success, 'there is no episode'
+
     def test_topics_are_those_of_the_contract(self, robot):
         robot.balance_until(lambda: len(robot.balls) > 5 and robot.states)
         assert list(robot.states[-1].name) == list(panda().joints)

@@ -32,6 +32,7 @@ from shared_control.world import World
 from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.episode_guard import EpisodeGuard
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
@@ -89,6 +90,7 @@ class PandaSimNode:
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)
         self._commands = TorqueInput(node, robot.dof)
         self._pushes = PushInput(node, self._world, self._timeout_ticks)
+        self._episode = EpisodeGuard(node)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
         node.create_service(SetBool, contract.REST_SERVICE, self._on_rest)
@@ -216,11 +218,14 @@ class PandaSimNode:
     # -- services ---------------------------------------------------------------------------------------------------
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.message = self._episode.refusal()
+        response.success = not response.message
+        if not response.success:
+            return response
         ball = self._starts.next()
         self._world.reset(ball)
         self._command = None
         self._tick += -self._tick % TICKS_PER_ACTION  # episodes start at policy ticks, also where a controller left
-        response.success = True
         response.message = f'ball dropped at x = {ball[0]:.4f} m'
         return response
 
@@ -233,6 +238,7 @@ class PandaSimNode:
 
     def _on_rest(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self._rests = request.data
+        self._episode.rest(request.data)
         response.success = True
         response.message = 'at rest' if self._rests else 'paused' if self._paused else 'running'
         return response

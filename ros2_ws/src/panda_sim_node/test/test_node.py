@@ -80,6 +80,7 @@ class TestLockstepWithController:
         assert len(states) == count
         pause(observer, False, contract.REST_SERVICE)
         observer.spin(lambda: len(states) > count)
+        assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success, 'the learner has left since'
 
     def test_pause_stops_time_at_a_policy_tick_and_reset_starts_there(self, observer, states):
         balls = observer.listen(contract.BALL)

@@ -152,7 +152,9 @@ TOPICS = (
 BAG_TOPICS = tuple(topic for topic in TOPICS if topic.in_bag)
 """What a recorder records."""
 
-RESET = Service('simulator/reset', _TRIGGER, 'simulator, mock', 'arm to the reference, ball dropped anew')
+RESET = Service(
+    'simulator/reset', _TRIGGER, 'simulator, mock',
+    'arm to the reference, ball dropped anew; refused in an episode of a learner (`learner/repeat` starts it over)')
 PAUSE = Service(
     'simulator/pause', _SET_BOOL, 'simulator, mock', 'for people: time stands still, or goes on; refused by a robot')
 REST = Service(

@@ -33,6 +33,7 @@ from shared_control_ros import contract
 from shared_control_ros.ball_starts import follow_seed
 from shared_control_ros.clock_steps import ClockSteps, in_words
 from shared_control_ros.diagnostics import Diagnostics
+from shared_control_ros.episode_guard import EpisodeGuard
 from shared_control_ros.fast_loop import Background
 from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
@@ -92,9 +93,10 @@ class MockPandaNode:
         self._pushes = PushInput(node, world, round(timeout / CONTROL_PERIOD))
         node.create_service(SetBool, contract.ROBOT_ENABLE_SERVICE, self._on_enable)
         node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
+        self._episode = EpisodeGuard(node)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)
         node.create_service(SetBool, contract.PAUSE_SERVICE, self._on_pause)
-        node.create_service(SetBool, contract.REST_SERVICE, self._on_pause)
+        node.create_service(SetBool, contract.REST_SERVICE, self._on_rest)
         self._background = Background(node)
         self._diagnostics = Diagnostics(node, self._period)
         self._watchdog = Watchdog()
@@ -181,11 +183,18 @@ class MockPandaNode:
         return response
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.message = self._episode.refusal()
+        response.success = not response.message
+        if not response.success:
+            return response
         ball = self._starts.next()
         self._robot.reset(ball)
-        response.success = True
         response.message = f'arm put back, ball dropped at x = {ball[0]:.4f} m'
         return response
+
+    def _on_rest(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        self._episode.rest(request.data)
+        return self._on_pause(request, response)
 
     def _on_pause(self, _: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         response.success = False
