@@ -39,7 +39,7 @@ class LastEpisode:
     def __init__(self, path: Path | None, wanted: dict[str, float]):
         self._path, self._wanted = path, wanted
         self.number = self._kept()
-        """Of the episode; 0: the teaching is over; None: nobody has asked."""
+        """Its number; 0: the teaching is over; None: nobody has asked."""
 
     def _kept(self) -> int | None:
         if self._path is None:
