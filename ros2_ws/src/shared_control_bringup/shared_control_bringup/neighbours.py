@@ -29,6 +29,8 @@ LOOKS_FOR = 1.0
 """Nodes that run announce themselves twice a second, and answer who asks within some ms, s."""
 MEETS_WITHIN = 8.0
 """Two nodes of one process that have not met after this never will, s."""
+UNKNOWN = '_NODE_NAME_UNKNOWN_'
+"""What rmw calls a node of which it knows topics and not yet the name."""
 GIVEN_UP_AFTER = 30.0
 """s"""
 DOMAINS = range(233)
@@ -113,15 +115,20 @@ def look() -> str:
         if time.monotonic() - began > MEETS_WITHIN:
             return 'nodes on this machine do not find each other: `shared-control doctor` looks for the reason'
         time.sleep(0.02)
-    while time.monotonic() - began < LOOKS_FOR:
-        time.sleep(0.05)
     alone = (contract.JOINT_STATES, contract.EFFORT_COMMANDS, contract.BALL, contract.CLOCK, contract.HUMAN_WRENCH,
              contract.AGENT_WRENCH, contract.APPLIED_WRENCH, contract.PHASE)  # of which a graph has one publisher
     of_keys = {name for name, interface in INTERFACES.items() if contract.KEYS in interface.publishes}
-    publishers = [info for topic in alone for info in me.get_publishers_info_by_topic(topic.full_name)]
-    publishers += [info for info in me.get_publishers_info_by_topic(contract.KEYS.full_name)
-                   if info.node_name in of_keys]  # devices of the person's own may be there
-    there = {f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in publishers}
+
+    def publishers() -> set[str]:
+        found = [info for topic in alone for info in me.get_publishers_info_by_topic(topic.full_name)]
+        found += [info for info in me.get_publishers_info_by_topic(contract.KEYS.full_name)
+                  if info.node_name in (*of_keys, UNKNOWN)]  # devices of the person's own may be there
+        return {f'{info.node_namespace.rstrip("/")}/{info.node_name}' for info in found}
+
+    there = publishers()
+    while (passed := time.monotonic() - began) < LOOKS_FOR or (passed < MEETS_WITHIN and UNKNOWN in str(there)):
+        time.sleep(0.05)
+        there = publishers()
     for context in contexts:
         rclpy.try_shutdown(context=context)
     if there:

@@ -82,7 +82,9 @@ def test_a_study_that_is_killed_goes_on_with_nothing_lost_and_nothing_twice(plan
                '--workers', '1']
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True) as study:
         try:
-            wait_until(lambda: is_done(first) and len(read_rows(second / 'episodes.csv')) == 1)
+            # The policy is written after the row: without it the episode is done again.
+            wait_until(lambda: is_done(first) and len(read_rows(second / 'episodes.csv')) == 1
+                       and (second / 'policy.safetensors').exists())
         finally:
             study.kill()
     wait_until(lambda: not processes(study.pid))

@@ -18,6 +18,7 @@ import pytest
 from shared_control_ros import contract
 from shared_control_ros.watching.lesson import Lesson
 from shared_control_ros.watching.observer import Observer
+from shared_control_ros.watching.pause import Pause
 from shared_control_ros.watching.requests import Requests
 from shared_control_ros.watching.scene import Scene
 from std_msgs.msg import Float64, Int32, String
@@ -125,7 +126,7 @@ def test_who_comes_in_the_middle_of_an_episode_takes_the_length_of_the_task(agen
 
 
 def test_the_end_that_was_asked_for_is_shown_until_the_teaching_is_over(observer):
-    requests = Requests(observer.node, lambda _: None)
+    requests = Requests(observer.node, lambda _: None, Pause(observer.node))
     observer.node.create_service(Trigger, contract.FINISH_SERVICE, lambda _, response: Trigger.Response(success=True))
     observer.node.create_service(Trigger, contract.KEEP_TEACHING_SERVICE, lambda _, response: response)  # refuses
 
