@@ -16,6 +16,9 @@
 
 import json
 import shutil
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pandas as pd
@@ -186,6 +189,28 @@ def test_an_interrupted_data_set_is_not_in_the_way_of_the_next(frames, tmp_path,
             write_lerobot(frames, tmp_path / 'set')
     assert list(tmp_path.rglob('*.parquet')) == []
     write_lerobot(frames, tmp_path / 'set')
+    assert not list((tmp_path / 'set').glob('.*'))
+
+
+KILLED = """
+import os, pathlib, signal, sys
+from shared_control_records.export import lerobot
+def written(episodes, task, with_parts, folder):
+    for part in ('data', 'meta'):
+        (folder / part).mkdir()
+    os.kill(os.getpid(), signal.SIGKILL)
+lerobot._write, lerobot.common_task = written, lambda _: (None, False)
+lerobot.write_lerobot([], pathlib.Path(sys.argv[1]))
+"""
+
+
+def test_what_is_left_of_a_data_set_whose_export_was_killed_is_not_in_the_way(frames, tmp_path):
+    killed = [sys.executable, '-c', KILLED, tmp_path / 'set']
+    assert subprocess.run(killed, check=False).returncode == -signal.SIGKILL
+    assert sorted(path.name for path in (tmp_path / 'set').iterdir()) == ['.unfinished_export', 'data', 'meta']
+    write_lerobot(frames, tmp_path / 'set')
+    with pytest.raises(FileExistsError, match='choose another'):
+        write_lerobot(frames, tmp_path / 'set')
 
 
 def test_the_command_says_where_and_never_overwrites_what_is_not_its_own(bag, tmp_path, monkeypatch, capsys):

@@ -43,6 +43,8 @@ from .frames import EpisodeFrames, action_rows, common_task
 
 VERSION = 'v3.0'
 FILE = 'chunk-{chunk_index:03d}/file-{file_index:03d}'
+_UNFINISHED = '.unfinished_export'
+"""A file in the folder of a data set as long as it is being written."""
 QUANTILES = (0.01, 0.10, 0.50, 0.90, 0.99)
 EPISODE_COLUMNS = ('session', 'session_episode', 'phase', 'outcome', 'verdict', 'devices')
 """What the list of episodes has of ours, beside what LeRobot asks for."""
@@ -89,31 +91,46 @@ def features(task: Task, with_parts: bool = True) -> dict[str, dict[str, Any]]:
 def write_lerobot(episodes: list[EpisodeFrames], folder: Path) -> None:
     """Write the data set into ``folder``, which is made. On an error, or when it is interrupted, nothing is left there.
 
+    What is left of one whose process was killed is known by a file in it, and written anew.
+
     Args:
         episodes: of one session or several, of one task.
 
     Raises:
-        FileExistsError: it exists and is not empty.
+        FileExistsError: it exists and holds something else.
         ValueError: the episodes are not of one task, or some lack the parts of the sum; the message names the sessions.
     """
     task, with_parts = common_task(episodes)
     refuse_filled(folder)
+    _remove_parts(folder)
     try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / _UNFINISHED).touch()
         _write(episodes, task, with_parts, folder)
+        (folder / _UNFINISHED).unlink()
     except BaseException:  # an interrupt, too: half a data set is in the way of the next
-        for part in ('data', 'meta'):
-            shutil.rmtree(folder / part, ignore_errors=True)
+        _remove_parts(folder)
         with suppress(OSError):
             folder.rmdir()
         raise
+
+
+def _remove_parts(folder: Path) -> None:
+    """Remove what was written of a data set that is not finished; nothing else."""
+    if (folder / _UNFINISHED).exists():
+        for part in ('data', 'meta'):
+            shutil.rmtree(folder / part, ignore_errors=True)
+        (folder / _UNFINISHED).unlink()
 
 
 def refuse_filled(folder: Path) -> None:
     """Refuse a folder in which no data set can be made.
 
     Raises:
-        FileExistsError: it exists and is not empty.
+        FileExistsError: it exists and is not empty, unless with what is left of an export that was killed.
     """
+    if (folder / _UNFINISHED).exists():
+        return
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise FileExistsError(f'{folder} exists already: choose another --output')
 
