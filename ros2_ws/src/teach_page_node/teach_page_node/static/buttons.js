@@ -8,10 +8,12 @@ const SETTLE_MS = 700; // a question that has just come is not answered by a sec
 
 export function listenToButtons(send) {
   let askedAt = -Infinity;
+  let isAsking = false;
   const on = (name, act) => part(name).addEventListener("click", act);
   const say = (name) => () => send({ do: name });
   const ask = (asks) => {
     askedAt = performance.now();
+    isAsking = asks;
     askWhetherDone(asks);
   };
   const isSettled = () => performance.now() - askedAt > SETTLE_MS;
@@ -34,7 +36,7 @@ export function listenToButtons(send) {
   });
   on("no", () => isSettled() && ask(false));
   on("yes", () => {
-    if (!isSettled()) return;
+    if (!isAsking || !isSettled()) return;
     ask(false);
     send({ do: "finish" });
   });
