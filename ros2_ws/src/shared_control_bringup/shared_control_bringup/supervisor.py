@@ -161,8 +161,7 @@ def _has_learned(node: NodeProcess, say: Callable[[str], None], asked: Callable[
 def end_by_force(node: NodeProcess, say: Callable[[str], None]) -> None:
     """End a node that does not leave, and say so."""
     say(f'{node.name} did not leave when it was asked to, and is ended by force; see {node.log_name}')
-    node.kill()
-    node.has_left(None)
+    node.wait(0.0)
 
 
 def _require_usable(node: NodeProcess) -> None:

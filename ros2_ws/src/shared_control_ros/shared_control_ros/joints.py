@@ -14,10 +14,15 @@
 
 """Joint positions out of ``/joint_states``."""
 
+from functools import cache
+
 import numpy as np
 from sensor_msgs.msg import JointState
 from shared_control.robot.possible import PossibleStates
 from shared_control.robot.spec import RobotSpec
+
+_possible = cache(PossibleStates)
+"""The bounds of a robot; positions come up to a hundred times a second."""
 
 
 def joint_positions(message: JointState, spec: RobotSpec) -> np.ndarray:
@@ -31,6 +36,6 @@ def joint_positions(message: JointState, spec: RobotSpec) -> np.ndarray:
     if missing:
         raise ValueError(f'no position of {missing[0]!r} among {list(message.name)}')
     q = np.array([positions[name] for name in spec.joints])
-    if fault := PossibleStates(spec).fault(q):
+    if fault := _possible(spec).fault(q):
         raise ValueError(fault)
     return q

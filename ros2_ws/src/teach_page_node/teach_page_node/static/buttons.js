@@ -1,6 +1,6 @@
 // The buttons of the lesson, and the keys that press some of them: p pauses, Enter begins to teach, g, b and x judge.
 
-import { askToPause, askWhetherDone, canStart, isTooSoon } from "./panel.js";
+import { askToPause, askWhetherDone, canStart, isAsking, isTooSoon } from "./panel.js";
 import { part } from "./parts.js";
 
 const VERDICTS = window.teachPage.verdicts ? { g: "success", b: "failure", x: "discard" } : {}; // those that are offered
@@ -8,12 +8,10 @@ const SETTLE_MS = 700; // a question that has just come is not answered by a sec
 
 export function listenToButtons(send) {
   let askedAt = -Infinity;
-  let isAsking = false;
   const on = (name, act) => part(name).addEventListener("click", act);
   const say = (name) => () => send({ do: name });
   const ask = (asks) => {
     askedAt = performance.now();
-    isAsking = asks;
     askWhetherDone(asks);
   };
   const isSettled = () => performance.now() - askedAt > SETTLE_MS;
@@ -36,7 +34,7 @@ export function listenToButtons(send) {
   });
   on("no", () => isSettled() && ask(false));
   on("yes", () => {
-    if (!isAsking || !isSettled()) return;
+    if (!isAsking() || !isSettled()) return;
     ask(false);
     send({ do: "finish" });
   });

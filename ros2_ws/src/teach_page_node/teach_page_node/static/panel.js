@@ -172,6 +172,7 @@ export function askToPause() {
 }
 
 export const canStart = () => mayStart;
+export const isAsking = () => asksWhetherDone;
 
 export function showConnection(isUp) {
   document.body.classList.toggle("offline", !isUp);
