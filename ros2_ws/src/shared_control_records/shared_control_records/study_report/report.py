@@ -35,7 +35,7 @@ from .cells import AGAINST, cell_rows
 from .figures import draw_all
 from .measures import Study, load_study, lost_error, run_table, times
 from .participants import participants_table, turnout
-from .statistics import survival
+from .statistics import median_time
 from .tables import comparison_table, conditions_table, group_table, runs_in_words, transfer_table
 
 _PAGE = Path(__file__).with_name('study.html')
@@ -123,7 +123,7 @@ def _headlines(study: Study) -> list[tuple[str, str]]:
     found = []
     for name in study.conditions:
         reached = times(study.of(name))
-        median = survival(reached).median.value
+        median = median_time(reached)
         what = f'{name}: episodes to skilled, median ({reached.reached.sum()} of {runs_in_words(len(reached.reached))} '
         found.append((_number(median, 'g') if math.isfinite(median) else f'over {int(reached.episodes.max())}',
                       what + 'got there)'))
@@ -135,7 +135,7 @@ def _reduction(study: Study) -> list[tuple[str, float]]:
 
     Alone the same learner, or PPO, has learned the same task.
     """
-    medians = {c.name: survival(times(study.of(c.name))).median.value for c in study.plan.conditions
+    medians = {c.name: median_time(times(study.of(c.name))) for c in study.plan.conditions
                if study.of(c.name)}
     found = []
     for taught in (c for c in study.plan.conditions if c.taught and c.name in medians):

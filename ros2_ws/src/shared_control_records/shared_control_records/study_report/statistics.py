@@ -146,14 +146,22 @@ def survival(times: Times) -> Survival:
         np.concatenate([[1.0], high]), _median(times))
 
 
+def median_time(times: Times) -> float:
+    """When half of them had reached it, by the Kaplan-Meier estimate; inf when half of them never did."""
+    return float(_medians(_pairs(times)[None])[0])
+
+
+def _pairs(times: Times) -> np.ndarray:
+    return np.stack([times.episodes, times.reached], axis=-1)
+
+
 def _median(times: Times) -> Estimate:
     """When half of them had reached it, with its percentile interval by resampling.
 
     Not from where the band crosses one half: the band ends where all have reached it, so that of runs that took three
     episodes each the interval would have no end.
     """
-    values = np.stack([times.episodes, times.reached], axis=-1)
-    value = float(_medians(values[None])[0])
+    values, value = _pairs(times), median_time(times)
     if len(values) < ENOUGH:
         return Estimate(value, np.nan, np.nan)
     drawn = np.random.default_rng(0).integers(len(values), size=(RESAMPLES, len(values)))
