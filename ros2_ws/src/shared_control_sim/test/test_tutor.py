@@ -21,9 +21,11 @@ import pytest
 from shared_control.env import SharedControlEnv
 from shared_control.keys import Key, KeyMoment
 from shared_control.rates import POLICY_PERIOD
+from shared_control.tasks.balance import BALANCE
 from shared_control.teaching.picture import Picture
 from shared_control.teaching.profiles import EXPERT, PROFILES, in_episode, profile
 from shared_control.teaching.tutor import TILT_OF_MOMENT, SimulatedTutor
+from shared_control.teaching.tutors import TUTOR_NAMES, make_tutor, tutor_named
 from shared_control_sim.local_plant import LocalPlant
 
 SHARP_EYED = replace(EXPERT, position_noise=0.0, velocity_noise=0.0, pitch_noise=0.0)
@@ -101,6 +103,22 @@ def test_an_adapting_tutor_becomes_an_expert():
 def test_sham_does_not_look():
     pictures = (lambda t: CENTRED), (lambda t: OFF_CENTRE)
     assert len({tuple(presses(SimulatedTutor(profile('sham'), seed=3), picture)) for picture in pictures}) == 1
+
+
+@pytest.mark.parametrize('seed', range(4))
+@pytest.mark.parametrize('name', TUTOR_NAMES)
+def test_a_later_episode_is_the_same_in_a_run_that_was_taken_up_again(name, seed):
+    def swings(now):
+        return seen(0.15 * np.sin(now), 0.15 * np.cos(now))
+
+    without_a_break = make_tutor(tutor_named(name, seed), BALANCE)
+    for episode in (1, 2):
+        without_a_break.reset(episode)
+        presses(without_a_break, lambda t: CENTRED)
+    without_a_break.reset(3)
+    taken_up = make_tutor(tutor_named(name, seed), BALANCE, episodes=2)
+    taken_up.reset(3)
+    assert presses(taken_up, swings, 15.0) == presses(without_a_break, swings, 15.0)
 
 
 def test_a_seed_makes_the_same_tutor():

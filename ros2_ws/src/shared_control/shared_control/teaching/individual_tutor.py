@@ -51,7 +51,6 @@ class IndividualTutor(SimulatedPerson):
 
     def __init__(self, individual: Individual, seed: int = 0, episodes: int = 0, task: Task = BALANCE):
         self.individual = individual
-        self._trust = 0.0
         super().__init__(task, seed, episodes)
 
     def _begin(self) -> None:
@@ -61,6 +60,7 @@ class IndividualTutor(SimulatedPerson):
         self._delay = who.delay * (1.0 + novice) * self._tired
         self._wrong_keys = min(who.wrong_keys * (1.0 + novice), 1.0)
         self._law = _law(who, self._random)
+        self._trust = 0.0
         self._seen: deque[tuple[float, Picture]] = deque()
         self._error = np.zeros((2, len(self._task.axes)))
         self._drift = 0.0
