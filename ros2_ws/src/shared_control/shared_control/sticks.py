@@ -88,7 +88,13 @@ class JoyMapping:
         self._buttons, self._axes, self._scale, self._rest = buttons, axes, scale, rest
 
     def axes(self, axes: Sequence[float]) -> list[float]:
-        """To the left and up, -1..1; an axis that is not there is 0."""
+        """To the left and up, -1..1; an axis that is not there is 0.
+
+        Raises:
+            ValueError: one of them is not finite: a driver that has lost its device.
+        """
+        if not np.isfinite([axes[number] for number in self._axes if 0 <= number < len(axes)]).all():
+            raise ValueError(f'expected finite axes, got {list(axes)}')
         return [float(np.clip(scale * (axes[number] - rest), -1.0, 1.0)) if 0 <= number < len(axes) else 0.0
                 for number, scale, rest in zip(self._axes, self._scale, self._rest, strict=True)]
 

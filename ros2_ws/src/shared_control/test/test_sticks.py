@@ -93,6 +93,13 @@ def test_a_gamepad_a_space_mouse_and_a_pedal():
     assert pedal.axes([]) == [0.0, 0.0] and pedal.buttons([]) == 5 * [0]
 
 
+@pytest.mark.parametrize('value', [math.nan, math.inf])
+def test_a_driver_that_has_lost_its_stick_holds_nothing_all_the_way(value):
+    with pytest.raises(ValueError, match='expected finite axes'):
+        JoyMapping().axes([value, 0.0])
+    assert JoyMapping(axes=(1, -1)).axes([value, 0.5]) == [0.5, 0.0], 'an axis that counts for nothing may be anything'
+
+
 @pytest.mark.parametrize(('options', 'said'), [
     ({'buttons': (0, 1)}, r'buttons is \[0, 1\], expected 5 numbers'),
     ({'axes': (0, 1, 2)}, r'axes is \[0, 1, 2\], expected 2'), ({'scale': (1.0, math.nan)}, 'scale is'),

@@ -19,7 +19,7 @@ from collections import deque
 
 from rclpy.node import Node
 from sensor_msgs.msg import Joy
-from shared_control.keys import Key
+from shared_control.keys import Key, has_let_go
 from shared_control.sticks import DEAD_BAND, JoyMapping
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
@@ -76,8 +76,18 @@ class Joystick:
                 self._node.get_logger().info(
                     f'{joy.header.frame_id!r} on {self._heard.topic_name}: {len(joy.axes)} axes, {len(joy.buttons)} '
                     'buttons; joy_axes and joy_buttons say which of them count')
-            self._publisher.publish(joy if self._mapping is None else Joy(
-                header=joy.header, axes=self._mapping.axes(joy.axes), buttons=self._mapping.buttons(joy.buttons)))
+            if self._mapping is None or has_let_go(joy.axes, joy.buttons):
+                self._publisher.publish(joy)
+                continue
+            try:
+                state = Joy(
+                    header=joy.header, axes=self._mapping.axes(joy.axes), buttons=self._mapping.buttons(joy.buttons))
+            except ValueError as error:
+                self._node.get_logger().error(
+                    f'dropped a message of {joy.header.frame_id!r} on {self._heard.topic_name}: {error}',
+                    throttle_duration_sec=1.0)
+                continue
+            self._publisher.publish(state)
 
 
 def declare_stick(node: Node) -> tuple[float, float]:

@@ -41,6 +41,8 @@ class Sources:
         self._timeout = timeout
         self._heard: dict[str, tuple[int, float]] = {}
         """When, by the robot's time, ns, and by the monotonic clock, s."""
+        self._acting: set[str] = set()
+        """Whoever did something in their last state. What they do may be as much as another does the other way."""
         self._holding: set[str] = set()
         self._is_active = True
         self.last_pressed = ''
@@ -78,9 +80,12 @@ class Sources:
             self.release()
             raise ValueError(f'the device makes {moment} N m of it')
         if acts:
+            self._acting.add(source)
             self._holding.add(source)
             self.last_pressed = source
-        if not moment.any():
+        else:
+            self._acting.discard(source)
+        if not self._acting and not moment.any():
             self._holding.clear()
 
     def drop_silent(self, now_ns: int, now: float) -> list[str]:
@@ -96,13 +101,15 @@ class Sources:
         return gone
 
     def leave(self, source: str) -> None:
-        """Nobody is at a source any more: it is forgotten, and the moment is zero if it has held some of it."""
+        """Nobody is at a source any more: it is forgotten, and the moment is zero if it may have held some of it."""
         self._heard.pop(source, None)
+        self._acting.discard(source)
         self._device.forget(source)
-        if source in self._holding:
+        if source in self._holding or not self._heard:
             self.release()
 
     def release(self) -> None:
         """Let go of the device: no moment."""
         self._device.release()
+        self._acting.clear()
         self._holding.clear()

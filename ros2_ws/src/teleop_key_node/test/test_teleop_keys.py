@@ -15,6 +15,8 @@
 """Bytes to strokes, and states of several sources to one moment."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from shared_control.tasks.balance import BALANCE
 from shared_control.teaching.key_device import KeyDevice
 from teleop_key_node.keyboard import HeldKeys, Keyboard, Stroke
@@ -139,11 +141,41 @@ def test_a_silent_source_is_forgotten_and_others_stay():
 def test_whoever_left_before_the_moment_was_zero_takes_nothing_away():
     sources = Sources(KeyDevice(BALANCE), timeout=0.5)
     sources.hear('page', [], [1, 0, 0], 0, 0.0)
+    sources.hear('page', [], [0, 0, 0], 0, 0.0)
     sources.hear('terminal', [], [0, 0, 1], 0, 0.0)
+    sources.hear('terminal', [], [0, 0, 0], 0, 0.0)
     sources.hear('terminal', [], [0, 1, 0], SECOND // 2, 0.5)
     sources.hear('terminal', [], [0, 1, 0], SECOND, 1.0)
     assert sources.drop_silent(SECOND, 1.0) == []
     assert sources.moment[0] == -5.0
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(st.tuples(
+    st.sampled_from('ab'), st.sampled_from([-1.0, 0.0, 1.0]),
+    st.sampled_from([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]))))
+def test_nobody_leaves_a_moment_behind_whatever_they_did(states):
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    for source, stick, buttons in states:
+        sources.hear(source, [stick], buttons, 0, 0.0)
+    sources.leave('b')
+    if not any(source == 'a' and (stick or any(buttons)) for source, stick, buttons in states):
+        assert not sources.moment.any()
+    sources.drop_silent(SECOND, 1.0)
+    assert not sources.moment.any()
+
+
+def test_a_push_that_a_stick_has_balanced_goes_with_whoever_made_it():
+    sources = Sources(KeyDevice(BALANCE), timeout=0.5)
+    for buttons in ([0, 1, 0], [0, 0, 0], [0, 1, 0], [0, 0, 0]):
+        sources.hear('terminal', [], buttons, 0, 0.0)
+    sources.hear('pad', [1.0], [0, 0, 0], 0, 0.0)
+    assert not sources.moment.any()
+    sources.hear('terminal', [], [0, 0, 0], 0, 0.0)
+    sources.hear('pad', [0.0], [0, 0, 0], SECOND, 1.0)
+    assert sources.moment.tolist() == [-10.0]
+    assert sources.drop_silent(SECOND, 1.0) == ['terminal']
+    assert not sources.moment.any()
 
 
 def test_whoever_lets_go_takes_away_what_was_held_and_no_more():

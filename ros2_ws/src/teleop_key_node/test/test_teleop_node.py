@@ -23,6 +23,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Joy
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from std_msgs.msg import Header
 from teleop_key_node.shared_names import SharedNames
 
 
@@ -144,6 +145,8 @@ def test_a_gamepad_counts_as_its_driver_publishes_it(graph, start):
         joys.append(joy)
     assert {joy.header.frame_id for joy in joys} == {'joy'}
     assert list(joys[-1].buttons) == [1, 0, 0, 0, 0, 0, 1, 0] and list(joys[-1].axes)[1] == 0.0
+    pad.publish(Joy(header=Header(frame_id='joy')))  # its driver leaves
+    graph.expect(0.0)
     send(0.0, 0.0, 0.0, -1.0, name='terminal')  # a driver that takes the name of a source of ours
     graph.expect(10.0)
     graph.expect(0.0)  # unplugged
