@@ -25,6 +25,7 @@ from sensor_msgs.msg import JointState
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
 from shared_control_ros.stamps import set_ns
+from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 from torque_ctrl_node import stop_record
 from torque_ctrl_node.stop_record import StopRecord
@@ -138,14 +139,36 @@ def start_as_on_a_robot(start_node, robot):
     return node
 
 
-def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_node, robot):
+def be_silent(robot, node):
+    robot.observer.spin_for(1.5)
+
+
+def be_unusable(robot, node):
+    effort, robot.message.effort = robot.message.effort, []
+    robot.run(1500)
+    robot.message.effort = effort
+
+
+def be_unheard(robot, node):
+    os.kill(node.process.pid, signal.SIGSTOP)
+    robot.run(1500, off=0.1)
+    robot.run(500, off=0.5)
+    os.kill(node.process.pid, signal.SIGCONT)
+
+
+@pytest.mark.parametrize('doubt', [be_silent, be_unusable, be_unheard])
+def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_node, robot, doubt):
     """Its driver was started anew, and a hand has moved the arm; near the reference the controller goes on."""
     node = start_as_on_a_robot(start_node, robot)
     robot.observer.spin_for(1.5)
     robot.run_until_answered(off=0.1)
-    robot.observer.spin_for(1.5)
-    assert robot.run(off=0.5) == []
-    assert 'disabled: no joint states came for a while, and now panda_joint1 is 0.50 rad off' in node.log()
+    doubt(robot, node)
+    answers = robot.run(off=0.5)
+    if doubt is not be_unheard:
+        assert answers == []
+    else:
+        robot.run_until_silent()
+    assert 'disabled: no usable joint states came for a while, and now panda_joint1 is 0.50 rad off' in node.log()
     assert robot.run(off=0.0) == [], 'until somebody enables it'
 
 
@@ -168,6 +191,24 @@ def test_a_controller_that_leaves_brings_the_arm_to_rest(start_node, robot):
     last = [np.array(command.data) for command in robot.commands[count:]][-100:]
     assert len(last) == 100 and node.process.returncode == 0
     assert all(torque[0] < 0.0 for torque in last), 'against the motion; the first joint carries no weight'
+
+
+def test_an_emergency_stop_while_it_leaves_is_kept(start_node, robot):
+    node = start(start_node)
+    robot.run_until_answered()
+    stop = robot.observer.publisher(contract.EMERGENCY_STOP)
+    robot.observer.spin(lambda: stop.get_subscription_count() == 2, what='the controller hears it')
+    robot.message.velocity = [0.5] * 7
+    node.process.send_signal(signal.SIGTERM)
+    for _ in range(150):
+        robot.tick()
+    stop.publish(Bool(data=True))
+    while node.process.poll() is None:
+        robot.tick()
+    robot.message.velocity = [0.0] * 7
+    node = start(start_node)
+    assert 'emergency stop: /controller/reset_emergency_stop' in node.log()
+    robot.run_until_silent()
 
 
 def test_an_emergency_stop_without_a_home_is_found_from_any_shell(tmp_path, monkeypatch):

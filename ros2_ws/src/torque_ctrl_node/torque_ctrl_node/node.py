@@ -119,8 +119,8 @@ class TorqueCtrlNode:
         self._watchdog = Watchdog()
         self._background = Background(node)
         self._now_ns = self._answered_ns = 0
+        self._heard = time.monotonic()
         self._ticks = 0
-        self._silent_turns = 0
 
     def run(self, stop: Stop) -> None:
         """Answer joint states until told to stop."""
@@ -128,7 +128,6 @@ class TorqueCtrlNode:
         while not stop.requested:
             message = self._joint_states.wait(SILENCE)
             if message is None:
-                self._silent_turns += 1
                 self._serve()
                 self._diagnostics.skip()
             else:
@@ -151,11 +150,11 @@ class TorqueCtrlNode:
             self.node.get_logger().error(
                 f'dropped a message on {self._joint_states.topic_name}: {error}', throttle_duration_sec=1.0)
             return
-        self._now_ns = now_ns
-        if self._silent_turns:
-            if self._silent_turns * SILENCE > JOINTS_SECONDS:
-                self._safety.see_again(state[0])
-            self._silent_turns = 0
+        # By both clocks: what lay in a queue while this process was stopped comes first, and is old.
+        heard, now = self._heard, time.monotonic()
+        if now - heard > JOINTS_SECONDS or now_ns - self._now_ns > JOINTS_SECONDS * 1e9:
+            self._safety.see_again(state[0])
+        self._heard, self._now_ns = now, now_ns
         if not self._safety.enabled:
             self._stand_by(now_ns, *state)
         if self._safety.enabled:
@@ -218,13 +217,14 @@ class TorqueCtrlNode:
 
     def close(self) -> None:
         """Bring an arm that is moved to rest: without torques it would go on by its momentum until it brakes."""
-        self._safety.end_torques()
+        self._safety.begin_to_leave()
         deadline = time.monotonic() + LEAVE_SECONDS
         while self._safety.stopping_ticks and time.monotonic() < deadline:
             message = self._joint_states.wait(SILENCE)
             if message is None:
                 break
             self._hear(message, Stop())
+            self._serve()
         self._safety.leave()
         self._background.close()
 

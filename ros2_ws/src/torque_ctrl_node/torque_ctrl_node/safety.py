@@ -59,6 +59,7 @@ class Safety:
         """Whether torques are computed and sent."""
         self.stopping_ticks = 0
         """For so many more ticks the arm is to be brought to rest."""
+        self._is_leaving = False
         self._q = spec.home
         self._q_seen = -math.inf
         self.is_stopped = self._record.is_on()
@@ -108,7 +109,7 @@ class Safety:
             return
         if self.enabled and (away := far_from_home(self._spec, q)):
             self.end_torques()
-            self._changed(f'disabled: no joint states came for a while, and now {away}')
+            self._changed(f'disabled: no usable joint states came for a while, and now {away}')
         if not self.enabled:
             self.stopping_ticks = 0  # what has had no torques for so long is at rest
 
@@ -127,8 +128,14 @@ class Safety:
             self.stopping_ticks = STOPPING_TICKS
             self._q_seen = -math.inf
 
+    def begin_to_leave(self) -> None:
+        """The controller is about to leave: the torques end, and nobody enables it any more."""
+        self.end_torques()
+        self._is_leaving = True
+
     def leave(self) -> None:
-        """The controller leaves cleanly."""
+        """The controller leaves cleanly; an emergency stop that has come until now is kept."""
+        self.hear()
         if self.is_stopped:
             self._record.leave()
 
@@ -141,6 +148,8 @@ class Safety:
         """What speaks against enabling now; empty when nothing does."""
         if self.is_stopped:
             return f'the emergency stop is on: call {self._reset_name} first'
+        if self._is_leaving:
+            return 'the controller is leaving'
         if time.monotonic() - self._q_seen > JOINTS_SECONDS:
             return f'no usable joint states on {self._node.resolve_topic_name(contract.JOINT_STATES.name)}'
         return far_from_home(self._spec, self._q)
