@@ -170,10 +170,13 @@ class TeleopKeyNode:
             self.node.get_logger().warning(f'the terminal is gone: serving {self._keys.topic_name} only')
 
     def _follow_lesson(self) -> None:
-        """Every episode and phase starts without a moment of the human, and most phases, and pauses, stay so."""
+        """Every episode and phase starts without a moment of the human; most phases, pauses and stops stay so."""
         begins = self._lesson.update()
+        was_off = self._pause.controller_is_off
         self._pause.update()
-        counts = self._lesson.keys_count and not self._pause.is_on
+        if self._pause.controller_is_off and not was_off:
+            self._tell('the controller is stopped or disabled: keys do not count until it is enabled')
+        counts = self._lesson.keys_count and not self._pause.is_on and not self._pause.controller_is_off
         if begins or counts != self._sources.is_active:
             self._sources.release()
             self._sources.is_active = counts

@@ -105,19 +105,27 @@ def test_keys_rest_unless_the_robot_is_taught_and_time_goes_on(graph, start):
     reports = graph.publisher(contract.DIAGNOSTICS)
     graph.until(lambda: reports.get_subscription_count() == 1, 'the node hears the simulator')
 
-    def report(paused):
-        status = DiagnosticStatus(values=[KeyValue(key='paused', value=str(paused))])
+    def report(**values):
+        status = DiagnosticStatus(values=[KeyValue(key=key, value=str(value)) for key, value in values.items()])
         reports.publish(DiagnosticArray(status=[DiagnosticStatus(), status]))
-    graph.press(1, 0, 0)
-    graph.expect(5.0)
-    report(True)
-    graph.expect(0.0)
-    for down in (0, 1, 0):
-        graph.press(down, 0, 0)
-    for paused in (True, False):
-        report(paused)
-        received = graph.received
-        graph.until(lambda before=received: graph.listen() == 0.0 and graph.received > before + 10, 'ten ticks of zero')
+
+    def expect_zero_until(**goes_on):
+        for down in (0, 1, 0):
+            graph.press(down, 0, 0)
+        for values in (stands, goes_on):
+            report(**values)
+            received = graph.received
+            graph.until(lambda before=received: graph.listen() == 0.0 and graph.received > before + 10, 'ten zeros')
+    runs, starts = {'paused': False}, {'emergency_stop': False, 'enabled': False, 'enables_itself': True}
+    for stands, goes_on in (
+            ({'paused': True}, runs),
+            ({'emergency_stop': True, 'enabled': False, 'enables_itself': False}, starts | {'enabled': True}),
+            ({'emergency_stop': False, 'enabled': False, 'enables_itself': False}, starts)):
+        graph.press(1, 0, 0)
+        graph.expect(5.0)
+        report(**stands)
+        graph.expect(0.0)
+        expect_zero_until(**goes_on)
     graph.press(1, 0, 0)
     graph.expect(5.0)
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether a person has paused the simulation."""
+"""Whether a person has paused the simulation, or ended the controller's torques."""
 
 from rclpy.node import Node
 
@@ -21,7 +21,7 @@ from ..fast_loop import Polled
 
 
 class Pause:
-    """What the simulator reports on /diagnostics: at once when it is paused or goes on, and once a second.
+    """What simulator and controller report on /diagnostics: at once when that changes, and once a second.
 
     It is known from there, and not from time that stands still: a slow machine is to take nobody's push away. A robot
     reports nothing of the kind, and is never paused.
@@ -32,11 +32,15 @@ class Pause:
         self.is_on = False
         self.is_reported = False
         """Whether there is a simulator that reports it."""
+        self.controller_is_off = False
+        """Whether the controller is stopped or disabled, and does not go on by itself."""
 
     def update(self) -> None:
         """Take what was reported."""
         while (message := self._reports.take()) is not None:
             for status in message.status:
-                for value in status.values:
-                    if value.key == 'paused':
-                        self.is_on, self.is_reported = value.value == 'True', True
+                told = {value.key: value.value == 'True' for value in status.values}
+                if 'paused' in told:
+                    self.is_on, self.is_reported = told['paused'], True
+                if 'emergency_stop' in told:
+                    self.controller_is_off = not (told.get('enabled') or told.get('enables_itself'))
