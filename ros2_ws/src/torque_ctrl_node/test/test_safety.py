@@ -172,6 +172,17 @@ def test_a_robot_that_comes_back_far_from_the_reference_gets_no_torques(start_no
     assert robot.run(off=0.0) == [], 'until somebody enables it'
 
 
+def test_a_robot_whose_time_stands_still_while_it_moves_gets_no_torques(start_node, robot):
+    node = start_as_on_a_robot(start_node, robot)
+    robot.run_until_answered()
+    count = len(robot.commands)
+    for step in range(50):
+        robot.now_ns -= 1_000_000
+        robot.run(1, off=0.001 * (step % 7 + 1))
+    assert len(robot.commands) == count
+    assert 'its stamp is that of the one before, but the joints have moved' in node.log()
+
+
 def test_a_robot_that_comes_back_after_it_was_disabled_gets_no_rest_of_the_damping(start_node, robot):
     start_as_on_a_robot(start_node, robot)
     assert robot.ask(contract.ENABLE_SERVICE, SetBool, data=False).success
