@@ -20,6 +20,7 @@ import gymnasium
 import numpy as np
 
 from .bounds import bounded
+from .not_copied import NotCopied
 from .plant import Plant, PlantState
 from .rates import POLICY_PERIOD
 from .robot.model import RobotModel
@@ -37,7 +38,7 @@ class Senses(Protocol):
         """What is seen when the plant is in ``state``; called once a policy period."""
 
 
-class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
+class SharedControlEnv(NotCopied, gymnasium.Env[np.ndarray, np.ndarray]):
     """One step is one policy period (20 ms).
 
     - Action, (k,) in [-1, 1]: the agent's moment is action * ``task.scale``, N m along the task's axes.
@@ -85,8 +86,10 @@ class SharedControlEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         """Apply ``action`` for 20 ms.
 
         Raises:
-            ValueError: the action is not finite.
+            ValueError: the action has another shape than the action space, or is not finite.
         """
+        if np.shape(action) != self.action_space.shape:
+            raise ValueError(f'the action {action} is of shape {np.shape(action)}, expected {self.action_space.shape}')
         if not np.isfinite(action).all():
             raise ValueError(f'the action {action} is not finite')
         plant_state = self.plant.advance(bounded(action, 1.0).astype(float) * self._scale)

@@ -19,6 +19,7 @@ from tempfile import NamedTemporaryFile
 from xml.etree import ElementTree
 
 import numpy as np
+from shared_control.not_copied import NotCopied
 from shared_control.robot.model import GRAVITY
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
@@ -31,10 +32,11 @@ with muted():  # it prints when it was built
     import pybullet
 
 _POSITION, _VELOCITY = itemgetter(0), itemgetter(1)
+_CLOSED = -1
 """Parts of the state of a joint as PyBullet gives it."""
 
 
-class BulletWorld:
+class BulletWorld(NotCopied):
     """An arm that takes joint torques, with a ball on its tray.
 
     An episode depends on nothing that came before it: :meth:`reset` restores a saved state of the whole world,
@@ -173,5 +175,6 @@ class BulletWorld:
 
     def close(self) -> None:
         """See :class:`World`."""
-        if pybullet.isConnected(self.client):
-            pybullet.disconnect(self.client)
+        client, self.client = self.client, _CLOSED  # the engine gives its number to the next world
+        if client != _CLOSED and pybullet.isConnected(client):
+            pybullet.disconnect(client)

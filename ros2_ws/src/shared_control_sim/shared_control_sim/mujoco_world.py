@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
+from shared_control.not_copied import NotCopied
 from shared_control.robot.model import GRAVITY
 from shared_control.robot.spec import RobotSpec
 from shared_control.robot.spec_file import panda
@@ -37,7 +38,7 @@ _BRAKE = {'solref': (0.002, 1.0), 'solimp': (0.9999, 0.9999, 0.001, 0.5, 2.0)}
 1e-5 rad."""
 
 
-class MujocoWorld:
+class MujocoWorld(NotCopied):
     """An arm that takes joint torques, with a ball on its tray.
 
     An episode depends on nothing that came before it, since :meth:`reset` puts back all that a step depends on. Two

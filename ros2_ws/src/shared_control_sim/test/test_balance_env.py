@@ -14,6 +14,9 @@
 
 """The Gymnasium environment in this process."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -46,6 +49,39 @@ def rollout(env, seed, actions):
 def test_gymnasium_and_sb3_accept_it(env):
     check_env(env)
     check_env_for_sb3(env)
+
+
+def test_what_is_closed_touches_no_other_and_is_used_no_more():
+    closed = SharedControlEnv(LocalPlant(physics='bullet'))
+    closed.reset(seed=1)
+    closed.close()
+    env = SharedControlEnv(LocalPlant(physics='bullet'))
+    env.reset(seed=1)
+    closed.close()
+    with pytest.raises(Exception, match='physics server'):
+        closed.reset(seed=1)
+    with pytest.raises(Exception, match='physics server'):
+        closed.step(np.zeros(1))
+    with pytest.raises(Exception, match='physics server'):
+        closed.plant.world.ball_state()
+    env.step(np.zeros(1))
+    env.close()
+
+
+def test_a_copy_is_refused(env):
+    for whole in (env, env.plant, env.plant.world, env.plant.controller):
+        for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+            if whole is env.plant and attempt is copy.copy:
+                continue  # which shares all that it has, as it does of any object
+            with pytest.raises(TypeError, match='cannot be copied or pickled: make another'):
+                attempt(whole)
+
+
+@pytest.mark.parametrize('action', [0.5, [0.5, 0.5], [[0.5]], []])
+def test_an_action_of_another_shape_is_refused(env, action):
+    env.reset(seed=0)
+    with pytest.raises(ValueError, match=r'expected \(1,\)'):
+        env.step(action)
 
 
 def test_same_seed_same_episode(env):

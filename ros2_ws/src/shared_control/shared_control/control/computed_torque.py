@@ -17,6 +17,7 @@
 import numpy as np
 import pinocchio as pin
 
+from ..not_copied import NotCopied
 from ..robot.model import RobotModel
 from ..robot.spec import RobotSpec
 
@@ -26,7 +27,7 @@ M_Y: tuple[int, ...] = (4,)
 """The row of the wrench that the thesis shares: ``W_tr = [0 0 0 0 M_y 0]``."""
 
 
-class ComputedTorqueController:
+class ComputedTorqueController(NotCopied):
     """``tau_cmd = tau_pd + J^T W_tr + tau_g`` (39, 40), limited.
 
     An explicit PD (27) is unstable on the Panda: ``M^-1 K_d dt`` has eigenvalues up to 3.6 for the task gains at
