@@ -16,6 +16,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 from shared_control.control.sharing import ADDITIVE, Sharing
 from shared_control.plugins import WORLDS, load
 from shared_control.rates import CONTROL_PERIOD
@@ -54,6 +55,11 @@ class ChangedPlant(LocalPlant):
         scene = task.scene if change.ball is None else replace(task.scene, ball=change.ball)
         world = load(WORLDS, physics)(replace(scene, density=None), CONTROL_PERIOD, real)
         super().__init__(task, person, physics, robot, sharing, world, _model(spec, change))
+        self._higher = np.array([0.0, 0.0, scene.ball.radius - task.scene.ball.radius])
+
+    def ball_start(self) -> np.ndarray:
+        """See :class:`LocalPlant`: as far above the tray as a ball that is not changed."""
+        return super().ball_start() + self._higher
 
 
 def senses_of(change: Change) -> PoorSenses | None:

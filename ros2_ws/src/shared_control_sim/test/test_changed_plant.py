@@ -21,6 +21,7 @@ import pytest
 from shared_control.robot.inertials import with_fer_inertials, with_masses_times
 from shared_control.robot.model import GRAVITY, RobotModel
 from shared_control.robot.spec_file import panda
+from shared_control.scene import Ball
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.plate import Plate
 from shared_control_sim.changed_plant import ChangedPlant, senses_of
@@ -61,6 +62,17 @@ def test_a_ball_rolls_down_a_tray_that_sits_askew_while_the_arm_thinks_it_level(
     speed = [one.ball_velocity[0] - other.ball_velocity[0] for one, other in zip(askew, level, strict=True)]
     assert speed[39] - speed[19] == pytest.approx(0.4 * 5 / 7 * GRAVITY * sin(radians(2.0)), rel=0.1)
     np.testing.assert_allclose(askew[39].q, level[39].q, atol=0.01)
+
+
+@pytest.mark.parametrize('task', [BALANCE, Plate()], ids=lambda task: task.name)
+def test_a_larger_ball_is_dropped_as_any_other(plant_with, physics, task):
+    for radius in (0.01, 0.03):
+        plant = plant_with(Change('', ball=Ball(radius=radius)), task)
+        start, state = plant.reset(3), None
+        for _ in range(20):
+            state = plant.advance(np.zeros_like(plant._none))
+            assert state.ball_position[2] <= start.ball_position[2] + 1e-4, 'thrown up'
+        assert start.ball_position[2] - state.ball_position[2] == pytest.approx(0.01, abs=0.001)
 
 
 def test_wrong_masses_in_the_controller_let_the_arm_sag_or_rise(plant_with):
