@@ -82,6 +82,11 @@ def _check_options(options: TrainOptions, chosen: Preset) -> None:
     if not chosen.taught and options.profile not in ('', 'none'):
         raise ValueError(f'the preset {chosen.name} has no tutor: leave --profile out, or choose another preset')
     tutor = _tutor(options, chosen)
+    if options.until_skilled and not 0 < 2 * options.evaluate_every <= options.episodes:
+        raise ValueError(f'--until-skilled needs two tests: --evaluate-every is {options.evaluate_every}, --episodes '
+                         f'{options.episodes}')
+    if options.human_only and tutor == 'none':
+        raise ValueError('--human-only, but nobody teaches: choose a --profile')
     new_learner(chosen, None if tutor == 'none' else tutor_named(tutor, options.seed), options.seed, options.physics,
                 Sharing(options.sharing))
 

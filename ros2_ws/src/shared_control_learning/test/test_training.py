@@ -240,6 +240,9 @@ def test_a_folder_of_something_else_is_refused(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(('arguments', 'message'), [
     (('--preset', 'autonomous', '--profile', 'low'), 'autonomous has no tutor'),
     (('--episodes', '0'), 'at least 1'),
+    (('--until-skilled', '--evaluate-every', '0'), '--until-skilled needs two tests'),
+    (('--until-skilled', '--evaluate-every', '2', '--episodes', '3'), '--until-skilled needs two tests'),
+    (('--preset', 'autonomous', '--human-only'), '--human-only, but nobody teaches'),
     (('--resume', '.'), 'there is no run'),
     (('--resume', '\x1b[31mred'), r'no run in \x1b[31mred'),
     (('--resume', 'damaged'), 'run.json is no run'),

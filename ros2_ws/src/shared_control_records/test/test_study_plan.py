@@ -132,6 +132,7 @@ def test_real_participants_take_the_conditions_in_turning_orders(plan_file):
     ('taught: false', 'taught: maybe', "conditions.alone.taught: Input should be a valid boolean, found 'maybe'"),
     ('conditions:', 'tests: [jump]\nconditions:', "tests.0: Input should be 'randomized', 'perturbation', 'traj"),
     ('conditions:', 'tests: []\ncheckpoints: [2]\nconditions:', 'checkpoints: a run that ends before one counts there'),
+    ('taught: false', 'taught: true', 'conditions.alone: the preset autonomous has no tutor: say taught: false'),
     ('alone:', '../alone:', 'a condition is named by letters'),
     ('alone:', '1:', 'conditions.1: Input should be a valid string'),
     ('{expert: 1, low: 2}', '[expert]', 'participants.simulated: Input should be a valid dictionary'),

@@ -37,7 +37,8 @@ class Individual:
     velocity_noise: float
     """m/s"""
     dead_band: float
-    """Nearer than this the ball is where it should be, to this person, m."""
+    """Nearer than this the ball is where it should be, to this person, m; an intermittent one is not surprised
+    by less."""
     stiffness: float
     """Tilt for each metre, rad/m; the crossover frequency, rad/s, to the law of that name."""
     lead: float

@@ -47,8 +47,8 @@ def add_command(commands: argparse._SubParsersAction) -> None:
                         default='randomized', help='which test')
     parser.add_argument('--physics', choices=names(WORLDS), default='bullet',
                         help='what they are tested in, whatever they were trained in')
-    parser.add_argument('--test-episodes', type=int, default=TEST_EPISODES, metavar='N',
-                        help='episodes of a randomized test')
+    parser.add_argument('--test-episodes', type=int, default=None, metavar='N',
+                        help=f'episodes of a randomized test, or of each part of transfer (default: {TEST_EPISODES})')
     parser.add_argument('--seed', type=int, default=None, metavar='N',
                         help='seed of the ball starts (default: 424242, the same for all)')
     parser.add_argument('--until-known', action='store_true',
@@ -65,6 +65,11 @@ def add_command(commands: argparse._SubParsersAction) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Test the policies; the exit code."""
+    if args.protocol in ('perturbation', 'trajectory') and (args.seed is not None or args.test_episodes is not None):
+        raise ValueError(f'the episodes of --protocol {args.protocol} are always the same: leave out --seed and '
+                         '--test-episodes')
+    if args.test_episodes is None:
+        args.test_episodes = TEST_EPISODES
     if args.test_episodes < 1:
         raise ValueError(f'--test-episodes is {args.test_episodes}; at least 1 is needed')
     if args.seed is not None and not 0 <= args.seed <= SEED_MAX:

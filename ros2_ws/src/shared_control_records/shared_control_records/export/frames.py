@@ -71,7 +71,7 @@ class EpisodeFrames:
     lean: np.ndarray
     """(n, 2), sines of the tray's tilt along base x and base y"""
     observation: np.ndarray
-    """(n, observation_size), what the task has a learner see"""
+    """(n, observation_size), what the task has a learner see, integrals apart"""
     reward: np.ndarray
     """(n,), unscaled, of the state at the end of the period"""
     failed: bool

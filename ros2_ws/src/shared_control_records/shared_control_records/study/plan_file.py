@@ -113,7 +113,10 @@ class Learning(Section):
 
     @model_validator(mode='after')
     def _can_be_learned(self) -> 'Learning':
-        preset_for(self.task, self.preset).check(Sharing(self.sharing))
+        known = preset_for(self.task, self.preset)
+        known.check(Sharing(self.sharing))
+        if self.taught and not known.taught:
+            raise ValueError(f'the preset {known.name} has no tutor: say taught: false')
         return self
 
 

@@ -160,7 +160,8 @@ def draw_actions(first: str, second: str) -> Draw:
             axes.tick_params(labelleft=True)  # one of the two may be empty
         for axes, group in zip(panels, (first, second), strict=True):
             runs = _group(study, condition, group) if condition else []
-            axes.set(title=f'{group.capitalize()} performers (n = {len(runs)})', xlabel='Episode of training')
+            taught = f'{condition}, ' if condition else ''
+            axes.set(title=f'{group.capitalize()} performers ({taught}n = {len(runs)})', xlabel='Episode of training')
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             for who, column, colour in (('human', 'human', HUMAN), ('robot', 'agent', AGENT)) if runs else ():
                 numbers, mean, sem, count = _by_episode(runs, f'mean_abs_{column}')
