@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One robot, controller and learner in a ROS domain and namespace: two would disturb each other's every tick."""
+"""One robot, controller, teleoperation and learner in a ROS domain and namespace: two would disturb every tick."""
 
 import errno
 import socket
@@ -39,7 +39,7 @@ def claim(node: Node, role: str) -> socket.socket:
 
     Args:
         node: that has the role.
-        role: ``robot``, ``controller`` or ``learner``.
+        role: ``robot``, ``controller``, ``teleoperation`` or ``learner``.
 
     Returns:
         The socket, to be kept open.

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A second robot, controller or learner is refused by name."""
+"""A second robot, controller, teleoperation or learner is refused by name."""
 
 import os
 import re
@@ -28,7 +28,7 @@ from shared_control_ros.parameters import ParameterError
 
 @pytest.mark.parametrize(('first', 'second', 'role'), [
     ('torque_ctrl_node', 'torque_ctrl_node', 'controller'), ('panda_sim_node', 'mock_panda_node', 'robot'),
-    ('ppo_agent_node', 'ppo_agent_node', 'learner')])
+    ('ppo_agent_node', 'ppo_agent_node', 'learner'), ('teleop_key_node', 'teleop_key_node', 'teleoperation')])
 def test_a_second_one_is_refused_and_what_was_killed_is_no_hindrance(start_node, first, second, role):
     there = start_node(first)
     there.wait_for_log('ready')

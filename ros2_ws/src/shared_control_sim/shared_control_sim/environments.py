@@ -29,7 +29,8 @@ def make_env(task: str, tutor: str | None = None, physics: str = 'bullet', human
 
     Args:
         task: name (entry point of the group ``shared_control.tasks``).
-        tutor: name of a simulated tutor (``expert``, ``crossover``, ...); nobody at the keys when None.
+        tutor: name of a simulated tutor (``expert``, ``crossover``, ...), of a family the individual of seed 0; nobody
+            at the keys when None. Each reset is one more episode that they teach: who learns, or tires, does.
         physics: its name (entry point of the group ``shared_control.worlds``).
         human_only: the agent's moment is not applied.
         settings: of the task, as its class has them (``episode_seconds``, ``action_scale``, ...).

@@ -35,6 +35,7 @@ from shared_control.verdict import Verdict
 from shared_control_ros import contract
 from shared_control_ros.diagnostics import Diagnostics
 from shared_control_ros.fast_loop import Background, Polled
+from shared_control_ros.one_graph import claim
 from shared_control_ros.parameters import declare
 from shared_control_ros.robot_parameter import declare_robot
 from shared_control_ros.runner import Stop, run
@@ -63,6 +64,7 @@ class TeleopKeyNode:
 
     def __init__(self) -> None:
         self.node = node = Node('teleop_key_node')
+        self._role = claim(node, 'teleoperation')
         robot = declare_robot(node)
         self._task = declare_task(node, 'What is taught: axes and keys.')
         self._device = declare(
