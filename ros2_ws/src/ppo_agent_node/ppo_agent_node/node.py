@@ -36,6 +36,7 @@ from shared_control.files import write_atomically
 from shared_control.plant import PlantInterrupted
 from shared_control.plugins import LEARNERS, TASKS, names
 from shared_control.rates import POLICY_PERIOD
+from shared_control.run_folder import RunFolder
 from shared_control.verdict import Verdict
 from shared_control_learning.callbacks import Callbacks
 from shared_control_learning.episode import Episode
@@ -125,6 +126,8 @@ class PpoAgentNode(Callbacks):
         self._teaches = mode == 'teach'
         self._policy_path: Path | None = None
         self._kept: KeptPolicy | None = None
+        self._folder: RunFolder | None = None
+        """Held as long as this process lives, as `train` does: two learners would write over each other."""
         self._table: EpisodeTable | None = None
         if self._teaches:
             self._learner = self._make_learner(chosen, seed, output, resume)
@@ -163,6 +166,8 @@ class PpoAgentNode(Callbacks):
         if output:
             folder = Path(output)
             folder.mkdir(parents=True, exist_ok=True)
+            self._folder = RunFolder(folder, 'learner', own=(), mark=POLICY_NAME, keys=())
+            self._folder.claim()
             self._policy_path = folder / POLICY_NAME
             self._kept = KeptPolicy(self._policy_path)
             if self._policy_path.exists():

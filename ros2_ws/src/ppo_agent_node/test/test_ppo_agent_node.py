@@ -19,6 +19,7 @@ import signal
 import pytest
 from ppo_agent_node.last_episode import LAST_EPISODE_NAME, LastEpisode
 from ppo_agent_node.node import VOID_IN_A_ROW
+from shared_control.run_folder import RunFolder
 from shared_control_learning.episode_table import BROKEN_OFF, read_rows
 from shared_control_learning.policy_file import load_policy, read_description
 from shared_control_ros import contract
@@ -206,6 +207,18 @@ def test_unusable_parameters_are_one_clear_line(start_node, parameters, words):
     assert len(lines) == 1
     assert words in lines[0]
     assert 'Traceback' not in node.log()
+
+
+def test_the_folder_of_another_learner_is_refused(start_node, output):
+    """One in another domain, whose role keeps nobody here from anything."""
+    output.mkdir()
+    other = RunFolder(output, 'run', own=(), mark='run.json', keys=())
+    other.claim()
+    node = start_node('ppo_agent_node', output=output, episodes=1)
+    assert node.process.wait(60) == 2, node.log()
+    assert f'error: the learner folder {output} is in use by another learner' in node.log()
+    assert [path.name for path in output.iterdir()] == ['.lock'], 'nothing was written'
+    other.release()
 
 
 def test_a_preset_that_cannot_learn_the_task_is_said(start_node, observer):

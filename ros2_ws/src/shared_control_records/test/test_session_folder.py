@@ -85,7 +85,7 @@ def test_a_project_with_settings_of_its_own_is_no_session(tmp_path):
 
 def test_files_that_somebody_put_into_a_session_outlive_it(tmp_path):
     folder = finished(tmp_path)
-    for name in (POLICY_NAME, TABLE_NAME, UNFINISHED_NAME, PRACTICE_NAME):
+    for name in (POLICY_NAME, TABLE_NAME, UNFINISHED_NAME, PRACTICE_NAME, '.lock'):
         (folder.learner / name).write_text('old')
     (folder.logs / 'torque_ctrl_node.log').write_text('old')
     (folder.bag / 'bag_0.mcap').write_text('old')
@@ -93,7 +93,7 @@ def test_files_that_somebody_put_into_a_session_outlive_it(tmp_path):
     for path in mine:
         path.write_text('mine')
     new = SessionFolder.create(tmp_path, overwrite=True)
-    assert sorted(path for path in tmp_path.rglob('*') if path.is_file() and path.name != '.lock') == sorted(mine)
+    assert sorted(path for path in tmp_path.rglob('*') if path.is_file() and path != tmp_path / '.lock') == sorted(mine)
     assert new.learner.is_dir() and new.logs.is_dir()
 
 

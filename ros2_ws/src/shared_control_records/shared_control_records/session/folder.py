@@ -26,7 +26,7 @@ from shared_control.run_folder import RunFolder, RunFolderError
 _OF_THE_NODES = (
     'bag/bag_*.mcap', 'bag/bag_*.mcap.tmp', 'bag/metadata.yaml', 'bag/metadata.yaml.tmp',
     'learner/episodes.csv', 'learner/unfinished.csv', 'learner/last_episode.json', 'learner/practice.json',
-    'learner/policy.safetensors', 'learner/policy.json', 'log/*.log')
+    'learner/policy.safetensors', 'learner/policy.json', 'learner/.lock', 'log/*.log')
 """What recorder, learner and nodes write. Their modules take seconds to load, so the names stand here once more."""
 
 
