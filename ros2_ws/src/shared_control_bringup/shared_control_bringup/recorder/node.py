@@ -24,6 +24,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from shared_control_records.bag.last_sent import last_sent
+from shared_control_records.bag.metadata import refuse_another_recorder
 from shared_control_records.bag.writer import BagWriter
 from shared_control_ros import contract
 from shared_control_ros.clock_steps import ClockSteps, in_words
@@ -107,6 +108,7 @@ class SessionRecorder:
         output = declare(self.node, 'output', '', "The bag's folder; made when it is missing.")
         if not output:
             raise ParameterError("parameter 'output' is missing: the folder to record into, -p output:=FOLDER")
+        refuse_another_recorder(Path(output).expanduser())
         self._flush_period: float = declare(
             self.node, 'flush_period', 0.25, 'At most this much is lost when the recorder is killed.',
             unit='s', minimum=0.05, maximum=0.5)

@@ -207,10 +207,12 @@ def test_a_full_disk_is_said_and_what_was_recorded_is_kept(start_recorder, traff
 @pytest.mark.parametrize(('parameters', 'said'), [
     ({}, "parameter 'output' is missing"),
     ({'output': '{tmp}/file/bag'}, 'cannot record into {tmp}/file/bag: Not a directory'),
+    ({'output': '{tmp}'}, '{tmp}/chat.db3 is of another recorder, which may still be writing: record into another'),
     ({'output': '{tmp}/bag', 'flush_period': 3.0}, "parameter 'flush_period' is out of range (0.05 to 0.5)"),
 ])
 def test_what_cannot_work_is_said_in_one_line(start_recorder, tmp_path, parameters, said):
     (tmp_path / 'file').touch()
+    (tmp_path / 'chat.db3').touch()
     given = {name: value.format(tmp=tmp_path) if isinstance(value, str) else value
              for name, value in parameters.items()}
     code, errors = start_recorder(**given).wait()

@@ -22,10 +22,11 @@ import sys
 import pytest
 import yaml
 from mcap.reader import make_reader
-from mcap.writer import MCAP0_MAGIC
+from mcap.writer import MCAP0_MAGIC, Writer
 from rosbags.rosbag2 import Reader
 from shared_control_records.bag import BagError, annotate, recover
 from shared_control_records.bag.last_sent import last_sent
+from shared_control_records.bag.metadata import refuse_another_recorder
 from shared_control_records.bag.writer import BagWriter
 
 CHUNKS, PER_CHUNK = 3, 4
@@ -210,6 +211,75 @@ def test_a_bag_that_is_being_recorded_is_not_touched(tmp_path):
     assert writer.path.exists()
     writer.finish()
     assert recover(tmp_path / 'bag') == []
+
+
+def record_elsewhere(path, finish):
+    """Another program's file of two messages without a schema, as Foxglove has them of JSON."""
+    path.parent.mkdir(exist_ok=True)
+    with path.open('wb') as file:
+        writer = Writer(file)
+        writer.start('', 'another program')
+        channel = writer.register_channel('/chat', 'json', 0)
+        for number in range(2):
+            writer.add_message(channel, number, b'{}', number)
+        writer.finish() if finish else writer.flush()
+
+
+@pytest.mark.parametrize('names', [
+    ['bag_0.mcap'], ['bag_0.db3'], ['bag_0.mcap.zstd', 'metadata.yaml'], ['metadata.yaml']])
+def test_what_another_recorder_has_written_is_not_recorded_into(tmp_path, names):
+    record_elsewhere(tmp_path / names[0], finish=True)
+    for name in names[1:]:
+        (tmp_path / name).write_text('of another one')
+    with pytest.raises(BagError, match=f'{names[0]} is of another recorder.* record into another folder'):
+        refuse_another_recorder(tmp_path)
+
+
+def test_a_folder_without_a_bag_is_recorded_into_and_so_is_one_of_ours(tmp_path):
+    (tmp_path / 'notes.txt').write_text('mine')
+    refuse_another_recorder(tmp_path)
+    refuse_another_recorder(tmp_path / 'not there yet')
+    path, _ = record(tmp_path, finish=False)
+    refuse_another_recorder(tmp_path)
+    path.write_bytes(b'')  # as a full disk leaves it
+    refuse_another_recorder(tmp_path)
+
+
+@pytest.mark.parametrize('begun', [False, True])
+def test_a_recorder_does_not_finish_what_another_one_may_still_be_writing(tmp_path, begun):
+    """It has come into the folder of a recording that goes on."""
+    path = tmp_path / 'bag' / 'bag_0.mcap'
+    record_elsewhere(path, finish=False)
+    if begun:
+        path.write_bytes(b'')
+    before, inode = path.read_bytes(), path.stat().st_ino
+    record(tmp_path / 'bag')
+    assert (path.read_bytes(), path.stat().st_ino) == (before, inode)
+    [recovered] = recover(tmp_path / 'bag')
+    assert recovered.messages == (0 if begun else 2), 'by hand it is finished'
+
+
+def test_what_somebody_has_added_to_the_metadata_stays(tmp_path):
+    record(tmp_path / 'bag')
+    path = tmp_path / 'bag' / 'metadata.yaml'
+    content = yaml.safe_load(path.read_text())
+    content['rosbag2_bagfile_information'] |= {'custom_data': {'place': 'lab 3'}, 'mine': 1}
+    path.write_text(yaml.safe_dump({**content, 'also_mine': 2}))
+    record(tmp_path / 'bag')
+    new = yaml.safe_load(path.read_text())
+    described = new['rosbag2_bagfile_information']
+    assert (described['custom_data'], described['mine'], new['also_mine']) == ({'place': 'lab 3'}, 1, 2)
+    assert described['relative_file_paths'] == ['bag_0.mcap', 'bag_1.mcap']
+
+
+def test_messages_without_a_schema_are_described_and_kept(tmp_path):
+    record_elsewhere(tmp_path / 'bag' / 'bag_0.mcap', finish=True)
+    record_elsewhere(tmp_path / 'bag' / 'bag_1.mcap', finish=False)
+    [recovered] = recover(tmp_path / 'bag')
+    assert recovered.messages == 2
+    described = yaml.safe_load((tmp_path / 'bag' / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
+    [topic] = described['topics_with_message_count']
+    assert (topic['topic_metadata']['type'], topic['message_count']) == ('', 4)
 
 
 def test_a_bag_needs_no_ros():

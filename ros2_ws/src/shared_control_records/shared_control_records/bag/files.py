@@ -22,6 +22,8 @@ from typing import IO
 from mcap.writer import MCAP0_MAGIC
 from shared_control import files
 
+LIBRARY = 'session_recorder_node'
+"""What the files of this project's recorder say has written them."""
 _NUMBER = re.compile(r'_(\d+)\.mcap$')
 
 

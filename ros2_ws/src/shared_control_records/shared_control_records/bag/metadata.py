@@ -15,16 +15,21 @@
 """A bag's ``metadata.yaml``, made from the files that it describes (version 9, as rosbag2 of Jazzy writes it)."""
 
 import os
+import struct
 from pathlib import Path
 from typing import Any
 
 import yaml
+from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
 from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
-from .files import BagError, bag_files
+from .files import LIBRARY, BagError, bag_files
 
+_INFORMATION = 'rosbag2_bagfile_information'
+_STORAGES = ('.mcap', '.mcap.zstd', '.db3', '.db3.zstd')
+"""How the names of files end that rosbag2 records."""
 _NEVER = 2 ** 63 - 1
 """What rosbag2 gives as the start of a file without a message, ns."""
 
@@ -62,6 +67,34 @@ def is_finished(path: Path) -> bool:
         return file.read() == MCAP0_MAGIC
 
 
+def recorder_of(path: Path) -> str | None:
+    """What an MCAP file says has written it; empty when it is none, None when it ends before that."""
+    with path.open('rb') as file:
+        try:
+            return make_reader(file).get_header().library
+        except (EndOfFile, struct.error):
+            return None
+        except Exception:  # mcap raises errors of many kinds
+            return ''
+
+
+def refuse_another_recorder(bag: Path) -> None:
+    """Refuse to record into a folder with a bag that another recorder has written, or is writing.
+
+    Raises:
+        BagError: there is one; the message says what to do.
+        OSError: a file cannot be read.
+    """
+    recorded = [path for path in sorted(bag.glob('*')) if path.name.endswith(_STORAGES)]
+    others = [path for path in recorded if path.suffix != '.mcap' or recorder_of(path) not in (LIBRARY, None)]
+    described = bag / 'metadata.yaml'
+    if described.exists() and not recorded:
+        others = [described]  # of files in a storage that is not known here
+    if others:
+        raise BagError(f'{others[0]} is of another recorder, which may still be writing: record into another folder, '
+                       'or move away what is there')
+
+
 def unlisted_files(bag: Path) -> list[Path]:
     """The files of a bag that its ``metadata.yaml`` does not name, so that nobody reads them; all without one.
 
@@ -74,7 +107,7 @@ def unlisted_files(bag: Path) -> list[Path]:
     if not path.exists():
         return bag_files(bag)
     try:
-        listed = yaml.safe_load(path.read_text(encoding='utf-8'))['rosbag2_bagfile_information']['relative_file_paths']
+        listed = yaml.safe_load(path.read_text(encoding='utf-8'))[_INFORMATION]['relative_file_paths']
         named = {Path(name).name.removesuffix('.zstd') for name in listed}
     except (yaml.YAMLError, KeyError, TypeError, ValueError) as error:
         raise BagError(f'{path} is no metadata of a bag; move it away') from error
@@ -82,13 +115,29 @@ def unlisted_files(bag: Path) -> list[Path]:
 
 
 def write_metadata(bag: Path) -> None:
-    """Write ``metadata.yaml`` for the finished files of a bag; an unfinished one is left out until it is finished."""
+    """Write ``metadata.yaml`` for the finished files of a bag; an unfinished one is left out until it is finished.
+
+    What somebody has added to it stays.
+    """
     summaries = [(path.name, read_summary(path)) for path in bag_files(bag)]
     finished = [(name, summary) for name, summary in summaries if summary is not None]
     target = bag / 'metadata.yaml'
+    earlier = _read(target)
+    known = earlier.get(_INFORMATION)
+    known = known if isinstance(known, dict) else {}
+    described = {**known, **_describe(finished), 'custom_data': known.get('custom_data')}
     unfinished = target.with_suffix('.yaml.tmp')
-    unfinished.write_text(_dump({'rosbag2_bagfile_information': _describe(finished)}), encoding='utf-8')
+    unfinished.write_text(_dump({**earlier, _INFORMATION: described}), encoding='utf-8')
     unfinished.replace(target)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """The content of a YAML file; empty when there is none, or none that can be read."""
+    try:
+        content = yaml.safe_load(path.read_text(encoding='utf-8'))
+    except (FileNotFoundError, yaml.YAMLError, ValueError, RecursionError):
+        return {}
+    return content if isinstance(content, dict) else {}
 
 
 def _describe(files: list[tuple[str, Summary]]) -> dict[str, Any]:
@@ -122,10 +171,11 @@ def _topics(summaries: list[Summary]) -> list[dict[str, Any]]:
     topics: dict[str, dict[str, Any]] = {}
     for summary in summaries:
         for channel in summary.channels.values():
+            schema = summary.schemas.get(channel.schema_id)  # messages that describe themselves have none
             topic = topics.setdefault(channel.topic, {
                 'topic_metadata': {
                     'name': channel.topic,
-                    'type': summary.schemas[channel.schema_id].name,
+                    'type': schema.name if schema else '',
                     'serialization_format': channel.message_encoding,
                     'offered_qos_profiles': yaml.safe_load(channel.metadata.get('offered_qos_profiles', '')) or [],
                     'type_description_hash': channel.metadata.get('topic_type_hash', ''),

@@ -18,8 +18,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .files import BagError, bag_files
-from .metadata import read_summary, unlisted_files, write_metadata
+from .files import LIBRARY, BagError, bag_files
+from .metadata import read_summary, recorder_of, unlisted_files, write_metadata
 from .rewrite import rewrite
 
 
@@ -37,7 +37,7 @@ class Recovered:
         return f'{self.path}: {self.messages} messages kept, {self.cut} bytes of a torn end cut off'
 
 
-def recover(bag: str | Path, meanwhile: Callable[[], None] = lambda: None) -> list[Recovered]:
+def recover(bag: str | Path, meanwhile: Callable[[], None] = lambda: None, own_only: bool = False) -> list[Recovered]:
     """Finish the files that a killed recorder left unfinished, and bring the bag's ``metadata.yaml`` up to date.
 
     Every chunk that had reached the file is kept. It is safe to call at any time, and does nothing to a whole bag.
@@ -45,6 +45,8 @@ def recover(bag: str | Path, meanwhile: Callable[[], None] = lambda: None) -> li
     Args:
         bag: the bag's folder.
         meanwhile: called after each chunk that was copied; a file has four a second of recording.
+        own_only: leave files alone of which this project's recorder is not known to be the writer: another one's may
+            still grow.
 
     Returns:
         What was finished; nothing for a bag that is whole.
@@ -57,7 +59,8 @@ def recover(bag: str | Path, meanwhile: Callable[[], None] = lambda: None) -> li
     bag = Path(bag).expanduser().absolute()
     if not bag.is_dir():
         raise BagError(f'there is no bag at {bag}')
-    unfinished = [path for path in bag_files(bag) if read_summary(path) is None]
+    unfinished = [path for path in bag_files(bag) if read_summary(path) is None and (
+        not own_only or recorder_of(path) == LIBRARY)]
     recovered = [Recovered(path, *rewrite(path, meanwhile=meanwhile)) for path in unfinished]
     if bag_files(bag) and (recovered or unlisted_files(bag)):
         write_metadata(bag)

@@ -84,7 +84,7 @@ def rewrite(path: Path, annotation: tuple[str, dict[str, str]] | None = None,
 def _copy(source: IO[bytes], path: Path, writer: Writer, without: str | None,
           meanwhile: Callable[[], None]) -> tuple[int, int]:
     """Copy all but the metadata record ``without``; gives the number of messages and where the last of it ends."""
-    schemas: dict[int, int] = {}
+    schemas: dict[int, int] = {0: 0}  # none, of messages that describe themselves
     channels: dict[int, int] = {}
     messages = end = 0
     spoilt = False

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from mcap.writer import Writer
 
-from .files import BagError, bag_files, lock, next_file
+from .files import LIBRARY, BagError, bag_files, lock, next_file
 from .metadata import blank_metadata, write_metadata
 from .repair import Recovered, recover
 
@@ -30,7 +30,7 @@ class BagWriter:
     """Writes the next file of a bag.
 
     Messages collect in memory until :meth:`flush` writes them as one chunk, which then survives whatever becomes of
-    this process. What an earlier writer left unfinished is finished first.
+    this process. What an earlier writer of this project left unfinished is finished first.
 
     Args:
         bag: the bag's folder; made when it is missing.
@@ -44,7 +44,7 @@ class BagWriter:
         self.bag = Path(bag).expanduser().absolute()
         try:
             self.bag.mkdir(parents=True, exist_ok=True)
-            self.recovered: list[Recovered] = recover(self.bag, meanwhile)
+            self.recovered: list[Recovered] = recover(self.bag, meanwhile, own_only=True)
             self.previous_files = bag_files(self.bag)
             self.path = next_file(self.bag)
             self._file = self.path.open('xb')
@@ -61,7 +61,7 @@ class BagWriter:
         self.bytes = 0
         """What has been flushed."""
         try:
-            self._writer.start(profile='ros2', library='session_recorder_node')
+            self._writer.start(profile='ros2', library=LIBRARY)
             self._writer.add_metadata('rosbag2', {'serialized_metadata': blank_metadata()})
             self._writer.flush()
         except OSError as error:
