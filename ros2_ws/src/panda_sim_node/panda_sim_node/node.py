@@ -52,6 +52,8 @@ REPEAT_AFTER = 0.1
 """A tick that nobody answers is published again after this, s."""
 STANDS_STILL_AFTER = 1.0
 """A controller that has not answered for this long is away, s."""
+LEARNER_LEFT_AFTER = 5.0
+"""A learner for whom time stands still, and who has not been in the graph for this long, has left, s."""
 LAG_GIVEN_UP = 0.25
 """A paced run that is this far behind the wall clock no longer tries to catch up, s."""
 
@@ -104,6 +106,8 @@ class PandaSimNode:
         self._start_ns = time.time_ns() // policy_period_ns * policy_period_ns
         self._paused = False  # by a person
         self._rests = False  # for the learner
+        self._had_learner = 0.0
+        """When there was one last while it rested, s of the monotonic clock."""
         self._times = TickTimes()
         self._running_seconds = 0.0
         self._missed = 0
@@ -119,6 +123,7 @@ class PandaSimNode:
                 self._between_actions()
             if self._stands_still:
                 self._background.spin_once(0.02)
+                self._end_rest_of_nobody()
                 self._diagnostics.skip()
                 began = self._deadline = time.monotonic()
             else:
@@ -133,6 +138,15 @@ class PandaSimNode:
     @property
     def _stands_still(self) -> bool:
         return self._paused or self._rests
+
+    def _end_rest_of_nobody(self) -> None:
+        """Let time go on when the learner has left, or was killed: people see no pause that they could end."""
+        now = time.monotonic()
+        if not self._rests or self._episode.has_learner:
+            self._had_learner = now
+        elif now - self._had_learner > LEARNER_LEFT_AFTER:
+            self._rests = False
+            self.node.get_logger().warning('the learner for whom time stood still has left: time goes on')
 
     def _between_actions(self) -> None:
         """Requests and disturbances are looked at here while time goes on, so that results can be repeated."""
@@ -233,15 +247,20 @@ class PandaSimNode:
         self._paused = request.data
         self._report()  # at once: keys do not count in a pause
         response.success = True
-        response.message = 'paused' if self._paused else 'running'
+        response.message = self._state
         return response
 
     def _on_rest(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         self._rests = request.data
+        self._had_learner = time.monotonic()
         self._episode.rest(request.data)
         response.success = True
-        response.message = 'at rest' if self._rests else 'paused' if self._paused else 'running'
+        response.message = self._state
         return response
+
+    @property
+    def _state(self) -> str:
+        return 'paused' if self._paused else 'at rest for the learner' if self._rests else 'running'
 
     # -- output ----------------------------------------------------------------------------------------------------
 
@@ -255,7 +274,7 @@ class PandaSimNode:
             problems, ticks=self._tick, tick_p50_ms=f'{self._times.quantile_ms(0.5):.3f}',
             tick_p99_ms=f'{self._times.quantile_ms(0.99):.3f}', late_ticks=self._times.late,
             running_seconds=f'{self._running_seconds:.3f}', simulated_seconds=f'{simulated:.3f}',
-            missed_commands=self._missed, paused=self._paused, task=self._task_name)
+            missed_commands=self._missed, paused=self._paused, at_rest=self._rests, task=self._task_name)
 
     def close(self) -> None:
         """Publish the figures of the whole run and free the physics server."""

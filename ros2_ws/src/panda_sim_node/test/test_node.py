@@ -20,6 +20,7 @@ from itertools import groupby
 import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
+from panda_sim_node.node import LEARNER_LEFT_AFTER
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from shared_control.tasks.balance import BALANCE
@@ -81,6 +82,24 @@ class TestLockstepWithController:
         pause(observer, False, contract.REST_SERVICE)
         observer.spin(lambda: len(states) > count)
         assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success, 'the learner has left since'
+
+    def test_time_goes_on_once_the_learner_for_whom_it_stands_still_has_left(self, observer, states):
+        reports = observer.listen(contract.DIAGNOSTICS)
+
+        def told():
+            return [v.value for r in reports for v in r.status[0].values if v.key == 'at_rest'][-1:]
+        learner = observer.publisher(contract.AGENT_WRENCH)
+        pause(observer, True, contract.REST_SERVICE)
+        observer.spin_for(LEARNER_LEFT_AFTER + 1.0)
+        count = len(states)
+        observer.spin_for(0.3)
+        assert len(states) == count, 'the learner is there, however long it takes'
+        assert told() == ['True']
+        answer = observer.call(SetBool, contract.PAUSE_SERVICE, SetBool.Request(data=False))
+        assert answer.message == 'at rest for the learner'
+        observer.node.destroy_publisher(learner)
+        observer.spin(lambda: len(states) > count, what='time goes on')
+        observer.spin(lambda: told() == ['False'])
 
     def test_pause_stops_time_at_a_policy_tick_and_reset_starts_there(self, observer, states):
         balls = observer.listen(contract.BALL)

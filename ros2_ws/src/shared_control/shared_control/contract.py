@@ -159,7 +159,8 @@ PAUSE = Service(
     'simulator/pause', _SET_BOOL, 'simulator, mock', 'for people: time stands still, or goes on; refused by a robot')
 REST = Service(
     'simulator/rest', _SET_BOOL, 'simulator, mock',
-    'for the learner: the same, and a pause that a person asks for meanwhile stays')
+    'for the learner: the same, and a pause that a person asks for meanwhile stays; ends by itself when the '
+    'learner has left')
 SEED = Service(
     'simulator/set_parameters', 'rcl_interfaces/srv/SetParameters', 'simulator, mock',
     '`seed` alone: begins the sequence of ball starts anew')

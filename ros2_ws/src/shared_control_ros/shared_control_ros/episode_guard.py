@@ -35,9 +35,14 @@ class EpisodeGuard:
         """The learner has called ``simulator/rest``."""
         self._goes_on = not rests
 
+    @property
+    def has_learner(self) -> bool:
+        """Whether there is a learner at all."""
+        return bool(self._node.count_publishers(self._topic))
+
     def refusal(self) -> str:
         """Why a reset is refused; empty: it is not."""
-        if not self._goes_on or not self._node.count_publishers(self._topic):
+        if not self._goes_on or not self.has_learner:
             return ''
         repeat = self._node.resolve_service_name(contract.REPEAT_SERVICE)
         return f'the learner has an episode under way, and would learn from it: {repeat} starts it over'
