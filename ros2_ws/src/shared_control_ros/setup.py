@@ -11,7 +11,7 @@ setup(
         ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
         ('share/' + package_name, ['package.xml']),
     ],
-    install_requires=['shared_control', 'rclpy', 'numpy'],
+    install_requires=['shared_control', 'rclpy', 'numpy', 'pyyaml'],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='shared-control maintainers',

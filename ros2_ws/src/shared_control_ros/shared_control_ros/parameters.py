@@ -14,13 +14,23 @@
 
 """Parameters with a description, a unit and a range."""
 
-from difflib import get_close_matches
+import re
+from collections.abc import Iterator, Sequence
+from difflib import SequenceMatcher, get_close_matches
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
+import yaml
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException, ParameterException
 from rclpy.node import Node
 from shared_control.printable import shortened
+
+SECTION = 'ros__parameters'
+"""What a parameter file has below the name of a node."""
+ALIKE = 0.85
+"""Names that are more alike than this are one with a slip in it; no two nodes of this project are, by `difflib`."""
 
 
 class ParameterError(ValueError):
@@ -76,3 +86,44 @@ def unknown_parameters(node: Node) -> list[str]:
         lines.append(f'there is no parameter {shortened(name)}, and it counts nothing'
                      + (f': is {meant[0]!r} meant?' if meant else '; `ros2 param list` shows what there is'))
     return lines
+
+
+def passed_over_files(node: Node, arguments: Sequence[str]) -> list[str]:
+    """The parameter files among a node's arguments that are meant for it, as it seems, and are not for it: a line each.
+
+    ROS passes over a section of another namespace, or of a name with a slip in it, in silence. A file for other nodes
+    may be given to this one, too, as launch files do.
+    """
+    own = node.get_fully_qualified_name()
+    lines = []
+    for path in (Path(value) for flag, value in pairwise(arguments) if flag == '--params-file'):
+        if not path.is_file():  # a pipe is read once
+            continue
+        sections = list(_sections(yaml.safe_load(path.read_bytes()), ''))
+        meant = next((section for section in sections if _is_alike(section, own)), None)
+        if meant and not any(_matches(section, own) for section in sections):
+            lines.append(f'{path} has no section for {own}, and nothing in it counts here: is {meant} meant? '
+                         f'/**/{node.get_name()}: counts in every namespace (sections: {", ".join(sections)})')
+    return lines
+
+
+def _sections(content: Any, namespace: str) -> Iterator[str]:
+    """The nodes that a parameter file names, each with its namespace."""
+    for key, value in content.items() if isinstance(content, dict) else ():
+        if key != SECTION and isinstance(value, dict):
+            name = f'{namespace}/{str(key).strip("/")}'
+            if SECTION in value:
+                yield name
+            yield from _sections(value, name)
+
+
+def _matches(section: str, node: str) -> bool:
+    """Whether a section is for a node, by the rules of rcl: * is any name, ** any number of them."""
+    pattern = section.replace('/**', r'(/\w+)*').replace('/*', r'(/\w+)')
+    return re.fullmatch(pattern, node) is not None
+
+
+def _is_alike(section: str, node: str) -> bool:
+    """Whether the last names are one, but for a slip."""
+    last, own = (name.rpartition('/')[2].removesuffix('_node') for name in (section, node))
+    return SequenceMatcher(None, last, own).ratio() > ALIKE

@@ -15,9 +15,11 @@
 """Parameters with ranges and choices."""
 
 import pytest
+import rclpy
+from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from shared_control_ros.parameters import ParameterError, declare, unknown_parameters
+from shared_control_ros.parameters import ParameterError, declare, passed_over_files, unknown_parameters
 
 
 @pytest.fixture
@@ -56,3 +58,40 @@ def test_a_name_with_a_slip_in_it_is_said(observer):
     node.destroy_node()
     assert slip == "there is no parameter 'moment_limt', and it counts nothing: is 'moment_limit' meant?"
     assert "no parameter 'wings'" in strange and 'ros2 param list' in strange
+
+
+@pytest.mark.parametrize(('namespace', 'section', 'is_for_it', 'is_said'), [
+    ('/', 'torque_ctrl_node', True, False),
+    ('/robot1', 'torque_ctrl_node', False, True),
+    ('/', '/robot1/torque_ctrl_node', False, True),
+    ('/robot1', '/*/torque_ctrl_node', True, False),
+    ('/a/b', '/*/torque_ctrl_node', False, True),
+    ('/a/b', '/**/torque_ctrl_node', True, False),
+    ('/a/b', '/a/**', True, False),
+    ('/', '/**', True, False),
+    ('/', 'torque_control_node', False, True),
+    ('/', 'torque_ctrl', False, True),
+    ('/', 'panda_sim_node', False, False),
+    ('/', '/robot1/*', False, False),
+])
+def test_a_file_that_is_passed_over_is_said(domain_id, tmp_path, namespace, section, is_for_it, is_said):
+    path = tmp_path / 'my.yaml'
+    path.write_text(f'"{section}": {{ros__parameters: {{limit: 5.0}}}}\nteach_page_node: {{ros__parameters: {{a: 1}}}}')
+    arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(path)]
+    context = Context()
+    rclpy.init(args=arguments, context=context, domain_id=domain_id)
+    node = Node('torque_ctrl_node', context=context)
+    lines, given = passed_over_files(node, arguments), 'limit' in node._parameter_overrides
+    own = node.get_fully_qualified_name()
+    node.destroy_node()
+    context.try_shutdown()
+    assert given == is_for_it, 'the rules are those of rcl'
+    assert bool(lines) == is_said
+    assert not lines or (f'{path} has no section for {own}' in lines[0] and 'teach_page_node' in lines[0])
+
+
+def test_namespaces_may_be_nested_and_pipes_are_left_alone(node, tmp_path):
+    path = tmp_path / 'my.yaml'
+    path.write_text('robot1: {observer: {ros__parameters: {a: 1}}}')
+    [line] = passed_over_files(node, ['--params-file', str(path), '--params-file', '/dev/null'])
+    assert '(sections: /robot1/observer)' in line
