@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
 from panda_sim_node.node import LEARNER_LEFT_AFTER
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
 from shared_control.tasks.balance import BALANCE
 from shared_control.tasks.task import BallStarts
@@ -127,6 +127,18 @@ class TestLockstepWithController:
             Parameter('seed', value=8))
         assert [result.successful for result in results] == [False, False, False, True]
         assert "takes seed alone, not 'paced'" in results[2].reason
+
+    def test_a_parameter_of_no_type_that_there_is_is_refused(self, observer, states):
+        strange = Parameter('seed', value=8).to_parameter_msg()
+        strange.value.type = 99
+        for name in (contract.SEED_SERVICE, '/panda_sim_node/set_parameters'):
+            [result] = observer.call(SetParameters, name, SetParameters.Request(parameters=[strange])).results
+            assert not result.successful and "nothing is set: parameter 'seed': 99" in result.reason
+        request = SetParametersAtomically.Request(parameters=[strange])
+        assert not observer.call(
+            SetParametersAtomically, '/panda_sim_node/set_parameters_atomically', request).result.successful
+        seeded, = set_parameters(observer, Parameter('seed', value=7))
+        assert seeded.successful, 'the node lives'
 
     def test_a_push_tilts_the_tray_while_it_lasts(self, observer, states):
         assert observer.call(Trigger, contract.RESET_SERVICE, Trigger.Request()).success

@@ -15,16 +15,18 @@
 """Parameters with a description, a unit and a range."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher, get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import yaml
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException, ParameterException
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from shared_control.printable import shortened
 
 SECTION = 'ros__parameters'
@@ -71,6 +73,33 @@ def declare(node: Node, name: str, default: Any, description: str, *, unit: str 
         if wrong:
             raise ParameterError(f'parameter {name!r} has no choice {wrong[0]!r}. {text}')
     return value
+
+
+def refuse_unknown_types(node: Node) -> None:
+    """Refuse a request to set parameters one of which is of no type that there is.
+
+    rclpy raises an error at it, which would end the node.
+    """
+    for service in node.services:
+        if service.srv_type in (SetParameters, SetParametersAtomically):
+            service.callback = _of_known_types(service.callback)
+
+
+def _of_known_types(serve: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    def serve_or_refuse(request: Any, response: Any) -> Any:
+        for parameter in request.parameters:
+            try:
+                Parameter.from_parameter_msg(parameter)
+            except ValueError as error:
+                refusal = SetParametersResult(
+                    successful=False, reason=f'nothing is set: parameter {shortened(parameter.name)}: {error}')
+                if isinstance(response, SetParameters.Response):
+                    response.results = [refusal for _ in request.parameters]
+                else:
+                    response.result = refusal
+                return response
+        return serve(request, response)
+    return serve_or_refuse
 
 
 def unknown_parameters(node: Node) -> list[str]:

@@ -28,7 +28,7 @@ from rclpy.signals import SignalHandlerOptions
 from shared_control.extras import NotInstalled
 from shared_control.streams import open_closed_streams
 
-from .parameters import ParameterError, passed_over_files, unknown_parameters
+from .parameters import ParameterError, passed_over_files, refuse_unknown_types, unknown_parameters
 from .processes import adopt_node_environment
 from .readiness import DONE, READY, ReadyPipe
 from .real_time import put_loop_above_other_threads
@@ -91,6 +91,7 @@ def run(make: Callable[[], Runnable], args: list[str] | None = None) -> int:
     try:
         runnable = make()
         put_loop_above_other_threads()
+        refuse_unknown_types(runnable.node)
         for line in (*unknown_parameters(runnable.node), *passed_over_files(runnable.node, args)):
             runnable.node.get_logger().warning(line)
         runnable.node.get_logger().info('ready')
