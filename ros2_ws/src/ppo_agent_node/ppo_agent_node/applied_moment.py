@@ -44,6 +44,16 @@ class AppliedMoment:
         self._input = Polled(node, topic, depth=topic.qos.depth)
         self.clear()
 
+    @property
+    def topic_name(self) -> str:
+        """The name after namespace and remapping."""
+        return self._input.topic_name
+
+    @property
+    def newest_ns(self) -> int:
+        """The stamp of what :meth:`before` has found, ns; 0 when nothing has come."""
+        return self._stamp_ns
+
     def publisher_count(self) -> int:
         """How many publishers the topic has."""
         return self._input.publisher_count()
@@ -76,3 +86,8 @@ class AppliedMoment:
         if stamp_ns - self._stamp_ns > SILENT_NS:
             return np.zeros(len(self._axes))
         return self._moment
+
+    def has_come(self) -> bool:
+        """Whether another one has come since :meth:`before`."""
+        self._next = self._next or self._input.take()
+        return self._next is not None

@@ -41,7 +41,7 @@ PERIOD_NS = round(POLICY_PERIOD * 1e9)
 GAP_NS = 1_000_000_000
 """An episode may miss as much when the machine is busy, not more."""
 JOINTS_SECONDS = 0.5
-"""How long the joints of a ball's stamp may be overdue, s; they are sent before it."""
+"""How long the joints of a ball's stamp may be overdue, s; they are sent before it. Applied moments likewise."""
 
 
 class GraphPlant:
@@ -51,7 +51,8 @@ class GraphPlant:
     ``/joint_states_throttle`` of the same stamp; the moment that answers it carries its stamp, too.
 
     A graph that stands still (paused by a person, or without its controller) is waited for: its time stands still,
-    too. When the simulator was started anew, the episode is void: :class:`PlantInterrupted`.
+    too. When the simulator was started anew, or the controller applies nothing while time goes on, the episode is void:
+    :class:`PlantInterrupted`.
 
     Args:
         node: the agent's node.
@@ -77,17 +78,28 @@ class GraphPlant:
             contract.AGENT_WRENCH.msg_type, contract.AGENT_WRENCH.name, contract.AGENT_WRENCH.qos)
         self._wrench = base_wrench(self.spec.base_frame)
         self._stamp_ns = 0
+        self._began_ns = 0
+        """The first tick of the episode."""
+        self._nothing_applied = False
+        """Whether the last episode was void because the controller applied nothing."""
         self._last_number = 0
         self.late_steps = 0
         """Policy ticks that came and went while the agent was busy."""
 
     def wait_until_up(self) -> None:
-        """Wait until the simulator and the controller are there."""
+        """Wait until the simulator and the controller are there, and apply moments if they were seen not to."""
         while not (self._simulator.is_there() and self._moments[0].publisher_count()):
             self._node.get_logger().info(
                 'waiting for the simulator and the controller', throttle_duration_sec=5.0)
             time.sleep(0.1)
             self._attend()
+        applied = self._moments[-1]
+        while self._nothing_applied and not applied.has_come():
+            self._node.get_logger().info(
+                f'waiting for the controller: nothing comes on {applied.topic_name}', throttle_duration_sec=5.0)
+            time.sleep(0.1)
+            self._answer_with_zero()
+        self._nothing_applied = False
 
     def reset(self, seed: int | None) -> PlantState:
         """See :meth:`Plant.reset`."""
@@ -100,6 +112,7 @@ class GraphPlant:
         self._last_number = 0
         self._simulator.rest(False, self._attend)
         ball = self._next_ball()
+        self._began_ns = to_ns(ball.header.stamp)
         return self._read(ball)
 
     def advance(self, agent: np.ndarray) -> PlantState:
@@ -171,10 +184,29 @@ class GraphPlant:
     def _read(self, ball: Odometry) -> PlantState:
         """The state at the tick of ``ball``, with the moments that counted just before it."""
         self._stamp_ns = to_ns(ball.header.stamp)
+        joints = self._joints_at(self._stamp_ns)
+        self._insist_on_moments()
         position, velocity = ball.pose.pose.position, ball.twist.twist.linear
         return PlantState(
-            self._joints_at(self._stamp_ns), (position.x, position.y, position.z),
+            joints, (position.x, position.y, position.z),
             (velocity.x, velocity.y, velocity.z), *(moment.before(self._stamp_ns) for moment in self._moments))
+
+    def _insist_on_moments(self) -> None:
+        """A learner is taught nothing by a robot that nobody moves."""
+        applied = self._moments[-1]
+        deadline = time.monotonic() + JOINTS_SECONDS
+        while True:
+            applied.before(self._stamp_ns)
+            silent_ns = self._stamp_ns - max(applied.newest_ns, self._began_ns)
+            if silent_ns <= GAP_NS:
+                return
+            if time.monotonic() > deadline:
+                break
+            time.sleep(0.01)  # a busy machine brings them late
+        self._nothing_applied = True
+        raise PlantInterrupted(
+            f"nothing on {applied.topic_name} for {silent_ns * 1e-9:.1f} s of the robot's time: the controller is "
+            f'disabled or stopped, {self._node.resolve_service_name(contract.ENABLE_SERVICE)} to go on')
 
     def _joints_at(self, stamp_ns: int) -> np.ndarray:
         """Joint positions at a tick, (n,), rad."""

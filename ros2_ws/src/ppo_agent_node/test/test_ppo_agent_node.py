@@ -104,6 +104,23 @@ def test_says_what_to_do_when_episodes_are_void_again_and_again(graph, start_nod
     assert 'end other programs' in agent.log() and 'shared-control doctor' in agent.log()
 
 
+def test_nothing_is_taught_while_the_controller_applies_nothing(start_node, observer, output):
+    """A robot's time goes on all the same."""
+    phases = observer.listen(contract.PHASE)
+    start_node('panda_sim_node', mode='free_running')
+    controller = start_node('torque_ctrl_node', prediction_horizon=0.004)
+    agent = start_node('ppo_agent_node', output=output, episodes=1, episode_seconds=2.0)
+    agent.wait_for_log('the episode is void: nothing on /target_wrench for 1.0 s', EPISODE_TIMEOUT)
+    assert 'the controller is disabled or stopped, /controller/enable to go on' in agent.log()
+    agent.wait_for_log('waiting for the controller: nothing comes on /target_wrench')
+    observer.spin_for(3.0)
+    assert agent.log().count('is void') == 1, 'nobody is kept busy with what nobody applies'
+    assert observer.call(SetBool, contract.ENABLE_SERVICE, SetBool.Request(data=True)).success, controller.log()
+    assert exit_code(observer, agent) == 0, agent.log()
+    assert [m.data for m in phases] == ['wait', 'teach', 'wait', 'teach', 'learn', 'done']
+    assert [row['phase'] for row in read_rows(output / 'episodes.csv')] == [BROKEN_OFF, 'teach']
+
+
 def test_survives_the_simulator_and_itself(graph, start_node, observer, phases, finish, output):
     """Learner/finish, simulator killed in mid-episode, a pause by a person, agent killed, resumed, told to leave."""
     left, reports = observer.listen(contract.TIME_LEFT), observer.listen(contract.DIAGNOSTICS)
