@@ -134,8 +134,11 @@ class PpoAgentNode(Callbacks):
         else:
             if not self._test_episodes:
                 raise ParameterError("parameter 'test_episodes' must be at least 1 in mode 'test'")
+            if output:
+                node.get_logger().warning("parameter 'output' counts nothing in mode 'test': nothing is kept")
             self._learner = _load(Path(policy), 'policy')
         warm_up(replace(preset(self._learner.name), task=self._learner.task))
+        self._minutes = minutes
         self._seconds_left = minutes * 60.0 - (self._table.taught_seconds if self._table else 0.0)
         self._practice = Practice(self._learner.task, rests, practice_minutes * 60.0)
         self._episode: Episode | None = None
@@ -212,6 +215,10 @@ class PpoAgentNode(Callbacks):
                 self._take_a_break(time.monotonic())
                 task = replace(self._learner.task, episode_seconds=self._episode_seconds)
                 learn(self._learner, SharedControlEnv(self._plant, task), self._episodes or None, self)
+                if self._seconds_left <= 0.0:
+                    self.node.get_logger().info(
+                        f"the teaching is over: its {self._minutes:g} minutes are used up (parameter 'max_minutes'; an "
+                        'earlier run in output counts)')
             if self._test_episodes:
                 self._test()
             self._training.enter('done')

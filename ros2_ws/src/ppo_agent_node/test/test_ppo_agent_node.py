@@ -21,7 +21,7 @@ from ppo_agent_node.last_episode import LAST_EPISODE_NAME, LastEpisode
 from ppo_agent_node.node import VOID_IN_A_ROW
 from shared_control.run_folder import RunFolder
 from shared_control_learning.episode_table import BROKEN_OFF, read_rows
-from shared_control_learning.policy_file import load_policy, read_description
+from shared_control_learning.policy_file import POLICY_NAME, load_policy, read_description
 from shared_control_ros import contract
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
@@ -224,6 +224,17 @@ def test_unusable_parameters_are_one_clear_line(start_node, parameters, words):
     assert len(lines) == 1
     assert words in lines[0]
     assert 'Traceback' not in node.log()
+
+
+def test_what_is_not_done_is_said(graph, start_node, observer, output):
+    """Teach when the time is used up; keep anything of a test."""
+    for _ in range(2):
+        agent = start_node('ppo_agent_node', output=output, max_minutes=0.1, episode_seconds=7.0)
+        assert exit_code(observer, agent) == 0, agent.log()
+        assert 'the teaching is over: its 0.1 minutes are used up' in agent.log()
+    assert 'episode 2' not in agent.log()
+    tested = start_node('ppo_agent_node', mode='test', policy=output / POLICY_NAME, output=output, test_episodes=1)
+    tested.wait_for_log("parameter 'output' counts nothing in mode 'test'")
 
 
 def test_the_folder_of_another_learner_is_refused(start_node, output):
