@@ -92,7 +92,7 @@ def test_description_transforms_and_odometry_agree_with_the_simulator(observer, 
         world.step(torque)
         if tick % 50:
             continue
-        published.publish(tick, tick * 1_000_000, world.effort)
+        published.publish(tick * 1_000_000, world.effort)
         observer.spin(lambda tick=tick: len(states) == len(balls) == tick // 50, what='the state that was published')
         assert to_ns(states[-1].header.stamp) == to_ns(balls[-1].header.stamp) == tick * 1_000_000
 

@@ -158,7 +158,7 @@ class PandaSimNode:
         return self._start_ns + self._tick * PERIOD_NS
 
     def _publish(self) -> None:
-        self._states.publish(self._tick, self._stamp_ns, self._world.effort)
+        self._states.publish(self._stamp_ns, self._world.effort)
 
     # -- lockstep --------------------------------------------------------------------------------------------------
 

@@ -66,7 +66,7 @@ JOINT_STATES = Topic(
     'rad, rad/s; `effort`: the torque applied last, N m')
 JOINT_STATES_THROTTLE = Topic(
     'joint_states_throttle', 'sensor_msgs/msg/JointState', 100, 'robot', 'agent, tutor, screens, views', '100 Hz',
-    'every tenth of them; not in bags', in_bag=False)
+    'those with a stamp that is a multiple of 10 ms; not in bags', in_bag=False)
 """For those who need no more: each reader of the 1 kHz topic makes the robot's tick longer. (On a robot that does not
 publish it, ``topic_tools throttle messages joint_states 100`` does.)"""
 EFFORT_COMMANDS = Topic(

@@ -130,6 +130,12 @@ class TestWiring:
         stamps = np.array([to_ns(m.header.stamp) for m in states])
         assert (stamps % 1_000_000 == 0).all() and (np.diff(stamps) > 0).all()
 
+    def test_throttled_states_are_those_of_every_10_ms(self, observer, states):
+        """The agent finds the joints that belong to a ball by its stamp."""
+        throttled = observer.listen(contract.JOINT_STATES_THROTTLE)
+        observer.spin(lambda: len(throttled) > 50)
+        assert all(to_ns(m.header.stamp) % 10_000_000 == 0 for m in throttled)
+
     def test_nothing_moves_before_a_person_enables_it(self, observer, states, commands):
         refused = enable(observer)
         assert not refused.success and 'enable the controller first' in refused.message

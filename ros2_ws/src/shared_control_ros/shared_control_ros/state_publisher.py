@@ -21,11 +21,8 @@ from rosgraph_msgs.msg import Clock
 from shared_control.world import World
 
 from . import contract
-from .joint_state_publisher import JointStatePublisher
+from .joint_state_publisher import THROTTLED_PERIOD_NS, JointStatePublisher
 from .stamps import set_ns
-
-TICKS_PER_BALL = 10
-"""The ball's odometry, the clock and the throttled joint states go out at 100 Hz."""
 
 
 class StatePublisher:
@@ -51,16 +48,15 @@ class StatePublisher:
             self._publish_clock = node.create_publisher(
                 contract.CLOCK.msg_type, contract.CLOCK.name, contract.CLOCK.qos).publish
 
-    def publish(self, tick: int, stamp_ns: int, effort: np.ndarray) -> None:
-        """The state at a tick, with the torque commanded last ((n,), N m): joints at each, the rest at every tenth."""
-        with_ball = tick % TICKS_PER_BALL == 0
+    def publish(self, stamp_ns: int, effort: np.ndarray) -> None:
+        """The state at a tick, with the torque commanded last ((n,), N m): joints at each, the rest every 10 ms."""
+        with_ball = stamp_ns % THROTTLED_PERIOD_NS == 0
         if with_ball and self._clock is not None:
             set_ns(self._clock.clock, stamp_ns)
             self._publish_clock(self._clock)
         position, velocity = self._world.joint_state()
         self._joints.publish(stamp_ns, position, velocity, effort)
         if with_ball:
-            self._joints.publish_throttled()
             self._fill_ball(stamp_ns)
             self._publish_ball(self._ball)
 

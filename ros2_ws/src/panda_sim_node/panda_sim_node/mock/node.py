@@ -121,7 +121,7 @@ class MockPandaNode:
             mode = self._robot.mode
             self._robot.tick(self._take_command())
             self._tick += 1
-            self._states.publish(self._tick, self._stamp_ns, self._robot.torque)
+            self._states.publish(self._stamp_ns, self._robot.torque)
             self._diagnostics.tick()
             if self._robot.mode is not mode:
                 self._on_mode()

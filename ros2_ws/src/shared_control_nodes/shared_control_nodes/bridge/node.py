@@ -42,7 +42,7 @@ from std_srvs.srv import SetBool, Trigger
 from .arm import IDLE, Arm, ArmState
 
 TICKS_PER_POLL = 10
-"""How often services are looked at and throttled joint states go out."""
+"""How often services are looked at."""
 POLL_SECONDS = 0.0002
 """How often the arm's state is looked at while it is under control."""
 CONTROL_STANDSTILL = 0.5
@@ -110,7 +110,6 @@ class PandaBridgeNode:
         self._diagnostics.tick()
         self._ticks += 1
         if self._ticks % TICKS_PER_POLL == 0:
-            self._joints.publish_throttled()
             self._background.poll()
 
     def _hear(self) -> None:
