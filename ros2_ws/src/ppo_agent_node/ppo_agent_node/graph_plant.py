@@ -103,10 +103,12 @@ class GraphPlant:
 
     def reset(self, seed: int | None) -> PlantState:
         """See :meth:`Plant.reset`."""
-        self.rest()
+        stands_still = self._rest()
         self._simulator.reset(seed, self._attend)
-        for queue in (self._balls, self._joints):
-            queue.clear()
+        self._balls.clear()
+        if stands_still:  # the tick at which it does so is sent again
+            self._joints.clear()
+        # A robot's time goes on: joints of a ball that a camera has yet to tell of wait already.
         for moment in self._moments:
             moment.clear()
         self._last_number = 0
@@ -130,8 +132,12 @@ class GraphPlant:
 
     def rest(self) -> None:
         """Ask for nothing, and stop time."""
+        self._rest()
+
+    def _rest(self) -> bool:
+        """See :meth:`rest`; whether time stands still."""
         self._answer_with_zero()
-        self._simulator.rest(True, self._answer_with_zero)
+        return self._simulator.rest(True, self._answer_with_zero)
 
     def _answer_with_zero(self) -> None:
         """Time goes on until the rest begins, and a controller that waits for an answer must have one."""

@@ -47,12 +47,16 @@ class Simulator:
         self._reset = node.create_client(Trigger, contract.RESET_SERVICE)
         self._seed = node.create_client(SetParameters, contract.SEED_SERVICE)
 
-    def rest(self, rests: bool, attend: Callable[[], None]) -> None:
-        """Stop time, or let it go on, unless a person has paused it. A robot refuses: its time goes on all the same."""
+    def rest(self, rests: bool, attend: Callable[[], None]) -> bool:
+        """Stop time, or let it go on, unless a person has paused it; whether that was done.
+
+        A robot refuses: its time goes on all the same.
+        """
         answer = self._call(self._rest, SetBool.Request(data=rests), attend)
         if not answer.success:
             self._node.get_logger().info(
                 f'{self._rest.service_name}: {answer.message or "refused"}', throttle_duration_sec=60.0)
+        return answer.success
 
     def reset(self, seed: int | None, attend: Callable[[], None]) -> None:
         """Drop the ball anew; a ``seed`` begins the sequence of ball starts anew.

@@ -65,7 +65,6 @@ class PandaBridgeNode:
         if not hostname:
             raise ParameterError("parameter 'hostname' is missing: the arm's control box, -p hostname:=172.16.0.2")
         self._arm = Arm(hostname)
-        self._state = self._arm.read()
         self._enabled = False
         self._fault = ''
         self._command: np.ndarray | None = None
@@ -84,6 +83,7 @@ class PandaBridgeNode:
 
     def _set_clock(self) -> None:
         """Stamps are whole milliseconds of the arm's clock, put beside this machine's."""
+        self._state = self._arm.read()  # a state from before this node was made would put them ahead
         self._start_ns = round(time.time_ns() / 1e6) * 1_000_000 - self._state.time_ms * 1_000_000
 
     def _stamp_ns(self) -> int:
