@@ -67,6 +67,23 @@ def test_it_moves_only_while_it_is_enabled(start_node, observer):
     observer.spin(lambda: mode() == 'move')
 
 
+def test_disabled_it_holds_the_arm_at_once_whatever_its_timeout(start_node, observer):
+    start_node('mock_panda_node', pace=0.1, command_timeout=10.0, drop_rate=0.0)  # the ball's weight moves the arm
+    states, reports = observer.listen(contract.JOINT_STATES), observer.listen(contract.DIAGNOSTICS)
+    commands = observer.publisher(contract.EFFORT_COMMANDS)
+    torques = Float64MultiArray(data=[0.0] * 6 + [0.001])
+
+    def moved():
+        commands.publish(torques)
+        return states and states[-1].effort[6]
+
+    observer.spin(moved)
+    assert observer.call(SetBool, contract.ROBOT_ENABLE_SERVICE, SetBool.Request(data=False)).success
+    observer.spin(lambda: not states[-1].effort[6], 5.0, 'the control ends before the timeout')
+    status = observer.spin(lambda: reports and 'disabled' in reports[-1].status[0].message and reports[-1].status[0])
+    assert {value.key: value.value for value in status.values}['mode'] == 'idle'
+
+
 @pytest.mark.skipif(shutil.which('cc') is None, reason='cc compiles what sets the clock')
 def test_its_stamps_follow_a_clock_that_was_set(start_node, observer, tmp_path, monkeypatch):
     """Keys are stamped by it; after a step they were too old or too new for good."""

@@ -115,10 +115,10 @@ class MockPandaNode:
         self._due = time.monotonic()
         while not stop.requested:
             self._wait_for_tick()
+            mode = self._robot.mode
             if self._tick % TICKS_PER_ACTION == 0:
                 self._background.poll()
                 self._pushes.update(self._tick)
-            mode = self._robot.mode
             self._robot.tick(self._take_command())
             self._tick += 1
             self._states.publish(self._stamp_ns, self._robot.torque)
@@ -172,9 +172,11 @@ class MockPandaNode:
             response.message = f'not enabled: {self._fault()}'
             return response
         self._enabled = request.data
+        if not self._enabled:
+            self._robot.stop()
         response.success = True
         response.message = ('enabled: the next torques move the arm' if self._enabled else
-                            'disabled: the brakes hold the arm once torques have been silent')
+                            'disabled: the brakes hold the arm')
         return response
 
     def _on_error_recovery(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
