@@ -189,7 +189,7 @@ def test_what_the_wire_brings_is_taken_or_dropped(wire, data):
 
 @pytest.fixture(scope='class')
 def torques(observer):
-    torques = TorqueInput(observer.node, 7)
+    torques = TorqueInput(observer.node, 7, 0.1)
     return lambda: torques
 
 

@@ -90,7 +90,7 @@ class PandaSimNode:
         self._world.reset(self._starts.next())
         self._states = StatePublisher(node, self._world)
         self._timeout_ticks = round(timeout / CONTROL_PERIOD)
-        self._commands = TorqueInput(node, robot.dof)
+        self._commands = TorqueInput(node, robot.dof, timeout)
         self._pushes = PushInput(node, self._world, self._timeout_ticks)
         self._episode = EpisodeGuard(node)
         node.create_service(Trigger, contract.RESET_SERVICE, self._on_reset)

@@ -29,14 +29,22 @@ from .wire import read_message
 from .wrenches import LARGEST
 
 ANSWER_LATE_NS = 1_000_000_000
-"""A robot that runs freely gets its answers some ticks late; those to older joint states than this are not for it."""
+"""However long torques may be silent: answers to older joint states than this are not for this robot."""
 
 
 class TorqueInput(Polled):
-    """Joint torques on /effort_controller/commands; unusable ones are refused with an error."""
+    """Joint torques on /effort_controller/commands; unusable ones are refused with an error.
 
-    def __init__(self, node: Node, dof: int):
+    Args:
+        node: the robot's node.
+        dof: number of its joints.
+        timeout: for how long torques may be silent where the robot runs freely, s. It gets its answers some ticks late;
+            one that is later than this counts as none, as if it had not come yet.
+    """
+
+    def __init__(self, node: Node, dof: int, timeout: float):
         self._dof = dof
+        self._late_ns = min(round(timeout * 1e9), ANSWER_LATE_NS)
         super().__init__(node, contract.EFFORT_COMMANDS, raw=True)
         self._layout = command_layout(dof)
 
@@ -61,6 +69,11 @@ class TorqueInput(Polled):
             return None
         says_stamp = len(label) == ANSWER_DIGITS and label.isdigit()
         if stamp_ns is not None and says_stamp and not stamp_ns - late_ns <= int(label) <= stamp_ns:
+            if late_ns:  # else the robot waits for its answer, and says so itself
+                self._node.get_logger().warning(
+                    f'torques on {self.topic_name} do not count: they answer joint states that are '
+                    f'{(stamp_ns - int(label)) * 1e-9:.3f} s old, not those of the last {late_ns * 1e-9:g} s',
+                    throttle_duration_sec=5.0)
             return None
         return torque
 
@@ -90,7 +103,7 @@ class TorqueInput(Polled):
         ``stamp_ns``: of its newest joint states.
         """
         message = self.take()
-        return None if message is None else self.read(message, stamp_ns, ANSWER_LATE_NS)
+        return None if message is None else self.read(message, stamp_ns, self._late_ns)
 
 
 class PushInput:

@@ -89,7 +89,7 @@ class MockPandaNode:
         world.reset(self._starts.next())
         self._robot = EffortPanda(world, timeout, limit_rate)
         self._states = StatePublisher(node, world, with_clock=self._has_clock)
-        self._commands = TorqueInput(node, world.spec.dof)
+        self._commands = TorqueInput(node, world.spec.dof, timeout)
         self._pushes = PushInput(node, world, round(timeout / CONTROL_PERIOD))
         node.create_service(SetBool, contract.ROBOT_ENABLE_SERVICE, self._on_enable)
         node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)

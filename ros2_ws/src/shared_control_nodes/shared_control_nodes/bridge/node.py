@@ -70,7 +70,7 @@ class PandaBridgeNode:
         self._command: np.ndarray | None = None
         self._command_time = 0.0
         self._joints = JointStatePublisher(node, panda())
-        self._commands = TorqueInput(node, panda().dof)
+        self._commands = TorqueInput(node, panda().dof, self._timeout)
         node.create_service(SetBool, contract.ROBOT_ENABLE_SERVICE, self._on_enable)
         node.create_service(Trigger, contract.ERROR_RECOVERY_SERVICE, self._on_error_recovery)
         self._enable_name = node.resolve_service_name(contract.ROBOT_ENABLE_SERVICE)
