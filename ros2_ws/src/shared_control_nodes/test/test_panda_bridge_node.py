@@ -200,3 +200,49 @@ def test_the_time_that_an_arm_takes_to_begin_is_no_silence(start_node, observer)
 
     observer.spin(lambda: answered() or 's: disabled, the arm' in node.log())
     assert 's: disabled, the arm' not in node.log()
+
+
+def enabled_bridge(start_node, observer, hostname):
+    """A bridge that has just taken an arm under control."""
+    states = observer.listen(contract.JOINT_STATES)
+    node = start_node('panda_bridge_node', hostname=hostname, command_timeout=1.0)
+    observer.spin(lambda: states)
+    enable_beside(observer, observer.publisher(contract.EFFORT_COMMANDS), [0.0] * 7)
+    return node
+
+
+@pytest.mark.usefixtures('with_stand_in')
+@pytest.mark.parametrize('by', ['a person', 'silence', 'a signal'])
+def test_a_control_that_does_not_end_ends_with_the_process(start_node, observer, by):
+    node = enabled_bridge(start_node, observer, 'unstoppable')
+    if by == 'a person':
+        response = enable(observer, False)
+        assert not response.success and 'not disabled: the control did not end (libfranka: stop f' in response.message
+    elif by == 'a signal':
+        node.process.send_signal(signal.SIGINT)
+    assert node.process.wait(60) == 2
+    assert 'error: the control did not end (libfranka: stop failed): it ends with this process, now' in node.log()
+    assert 'Traceback' not in node.log() and 'the arm holds itself' not in node.log()
+
+
+@pytest.mark.usefixtures('with_stand_in')
+def test_an_arm_that_is_lost_is_named(start_node, observer):
+    node = enabled_bridge(start_node, observer, 'lost')
+    assert node.process.wait(60) == 2
+    assert 'error: the arm does not answer any more: libfranka: UDP receive: Timeout' in node.log()
+    assert 'Traceback' not in node.log()
+
+
+@pytest.mark.usefixtures('with_stand_in')
+def test_an_arm_whose_time_stands_still_is_disabled_and_services_are_served(start_node, observer):
+    node = enabled_bridge(start_node, observer, 'frozen')
+    reports = observer.listen(contract.DIAGNOSTICS)
+    node.wait_for_log("the arm's time stands still: no new state for 1.0 s; disabled")
+    assert enable(observer, False).success
+    refused = enable(observer)
+    assert not refused.success and "not enabled: the arm's time stands still" in refused.message
+    reports.clear()
+    observer.spin(lambda: len(reports) > 2)
+    assert all("robot: the arm's time stands still" in r.status[0].message for r in reports)
+    assert node.log().count('stands still: ') == 1 and 'stamps set anew' not in node.log()
+    assert node.stop() == 0

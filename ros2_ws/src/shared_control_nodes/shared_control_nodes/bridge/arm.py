@@ -24,7 +24,7 @@ IDLE = 'kIdle'
 
 
 class ArmError(OSError):
-    """The arm cannot be reached; the message says why and what to do."""
+    """The arm cannot be reached or stopped; the message says why and what to do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +66,15 @@ class Arm:
             raise ArmError(f'no Panda at {hostname}: {error}') from error
 
     def read(self) -> ArmState:
-        """The newest state; while the arm is not under control this waits for the next one, a millisecond."""
-        state = self._panda.get_state()
+        """The newest state; while the arm is not under control this waits for the next one, a millisecond.
+
+        Raises:
+            ArmError: the arm does not answer any more.
+        """
+        try:
+            state = self._panda.get_state()
+        except RuntimeError as error:
+            raise ArmError(f'the arm does not answer any more: {error}') from error
         return ArmState(state.time.to_msec(), np.array(state.q), np.array(state.dq), np.array(state.tau_J_d),
                         state.robot_mode.name)
 
@@ -94,10 +101,18 @@ class Arm:
         return ''
 
     def stop(self) -> None:
-        """End the control: the arm holds itself."""
-        if self._controller is not None:
-            self._controller = None
+        """End the control: the arm holds itself.
+
+        Raises:
+            ArmError: it goes on with its last torque, for as long as this process lives.
+        """
+        if self._controller is None:
+            return
+        try:
             self._panda.stop_controller()
+        except RuntimeError as error:
+            raise ArmError(f'the control did not end ({error}): it ends with this process, now') from error
+        self._controller = None
 
     def recover(self) -> None:
         """Leave a reflex.

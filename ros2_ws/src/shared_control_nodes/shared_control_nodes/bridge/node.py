@@ -15,10 +15,12 @@
 """Bridge to a real Panda: wires panda-python's torque interface to /joint_states and /effort_controller/commands.
 
 It refuses to move until a person calls robot/enable (SetBool), and ends the control when torques are silent, when the
-arm reports an error and when it leaves. robot/error_recovery (Trigger) leaves a reflex. A skeleton: see
-docs/how_to/real_panda.md.
+arm reports an error, when the arm's time stands still and when it leaves. A control that cannot be ended ends with the
+process, at once. robot/error_recovery (Trigger) leaves a reflex. A skeleton: see docs/how_to/real_panda.md.
 """
 
+import os
+import sys
 import time
 
 import numpy as np
@@ -39,15 +41,16 @@ from shared_control_ros.runner import Stop, run
 from shared_control_ros.watchdog import Watchdog
 from std_srvs.srv import SetBool, Trigger
 
-from .arm import IDLE, Arm, ArmState
+from .arm import IDLE, Arm, ArmError, ArmState
 
-TICKS_PER_POLL = 10
-"""How often services are looked at."""
+ROUNDS_PER_POLL = 10
+"""How often services are looked at, whether the arm's time goes on or not."""
 POLL_SECONDS = 0.0002
 """How often the arm's state is looked at while it is under control."""
 CONTROL_STANDSTILL = 0.5
 """panda-python goes on applying the last torque when this loop stands still; after this, s, the process ends, and the
 control with it: the arm then stops by itself."""
+STANDSTILL = "the arm's time stands still"
 CLOCK_DRIFT = 0.05
 """How far the arm's clock may drift from this machine's before stamps are set anew, s."""
 
@@ -78,13 +81,23 @@ class PandaBridgeNode:
         self._diagnostics = Diagnostics(node, CONTROL_PERIOD)
         self._watchdog = Watchdog()
         self._control_watchdog = Watchdog(max(CONTROL_STANDSTILL, 2.0 * self._timeout))
-        self._ticks = 0
+        self._rounds = 0
+        self._lost: ArmError | None = None  # whoever asked to stop it is answered before the process ends
+        self._stands_still = False
+        self._state = self._arm.read()  # not earlier: making this node takes a while, by which stamps would be ahead
+        self._last_tick = time.monotonic()
         self._set_clock()
 
     def _set_clock(self) -> None:
         """Stamps are whole milliseconds of the arm's clock, put beside this machine's."""
-        self._state = self._arm.read()  # a state from before this node was made would put them ahead
         self._start_ns = round(time.time_ns() / 1e6) * 1_000_000 - self._state.time_ms * 1_000_000
+
+    def _follow_clock(self) -> None:
+        """Only while the state is new: the arm may be silent for seconds while a control begins or ends."""
+        drift = (time.time_ns() - self._stamp_ns()) * 1e-9
+        if abs(drift) > CLOCK_DRIFT:
+            self.node.get_logger().warning(f"stamps set anew: the arm's clock was {drift:.3f} s off this machine's")
+            self._set_clock()
 
     def _stamp_ns(self) -> int:
         return self._start_ns + self._state.time_ms * 1_000_000
@@ -97,20 +110,39 @@ class PandaBridgeNode:
             state = self._arm.read()
             if state.time_ms == self._state.time_ms:
                 time.sleep(POLL_SECONDS)
+                self._look_for_standstill()
             else:
                 self._tell(state)
             if self._enabled:
                 self._watch()
+            self._rounds += 1
+            if self._rounds % ROUNDS_PER_POLL == 0:
+                self._background.poll()
+            if self._lost is not None:
+                raise self._lost
             if self._diagnostics.due():
                 self._report()
 
     def _tell(self, state: ArmState) -> None:
         self._state = state
+        if self._stands_still or self._diagnostics.due():
+            self._follow_clock()
         self._joints.publish(self._stamp_ns(), state.q, state.qd, state.torque)
         self._diagnostics.tick()
-        self._ticks += 1
-        if self._ticks % TICKS_PER_POLL == 0:
-            self._background.poll()
+        self._last_tick = time.monotonic()
+        if self._stands_still:
+            self._stands_still = False
+            self.node.get_logger().warning("the arm's time goes on")
+            self._report()
+
+    def _look_for_standstill(self) -> None:
+        """End the control of an arm of which nothing new is known."""
+        if self._stands_still or time.monotonic() - self._last_tick <= self._timeout:
+            return
+        self._stands_still = True
+        self._disable()
+        self.node.get_logger().error(f'{STANDSTILL}: no new state for {self._timeout} s; disabled')
+        self._report()
 
     def _hear(self) -> None:
         torque = self._commands.take_torque(self._stamp_ns())
@@ -138,14 +170,25 @@ class PandaBridgeNode:
         return time.monotonic() - self._command_time
 
     def _disable(self) -> None:
+        """End the control.
+
+        Raises:
+            ArmError: it cannot be ended; so this process has to.
+        """
         self._watchdog.feed()  # ending the control may take the arm a while
         self._enabled = False
-        self._arm.stop()
+        try:
+            self._arm.stop()
+        except ArmError as error:
+            self._lost = error
+            raise
 
     # -- services ----------------------------------------------------------------------------------------------------
 
     def _obstacle(self) -> str:
         """What speaks against moving now; empty when nothing does."""
+        if self._stands_still:
+            return STANDSTILL
         if self._state.mode != IDLE:
             return f'the arm is in mode {self._state.mode}, not {IDLE}'
         if self._command is None or self._silence() > self._timeout:
@@ -164,13 +207,14 @@ class PandaBridgeNode:
                 if obstacle := self._obstacle():
                     raise RuntimeError(obstacle)
                 self._arm.start()
-                self._command_time = time.monotonic()  # while it began nobody had a state to answer: that is no silence
+                # While it began there was no new state, and so nothing to answer: that is no silence.
+                self._command_time = self._last_tick = time.monotonic()
                 self._enabled = True
             response.success = True
             response.message = 'enabled: the arm moves' if self._enabled else 'disabled: the arm holds itself'
-        except RuntimeError as error:
+        except (RuntimeError, ArmError) as error:
             response.success = False
-            response.message = f'not enabled: {error}'
+            response.message = f'not {"enabled" if request.data else "disabled"}: {error}'
         self.node.get_logger().warning(response.message)
         return response
 
@@ -181,7 +225,7 @@ class PandaBridgeNode:
             self._fault = ''
             response.success = True
             response.message = 'recovered; still disabled'
-        except RuntimeError as error:
+        except (RuntimeError, ArmError) as error:
             response.success = False
             response.message = str(error)
         self.node.get_logger().warning(response.message)
@@ -191,21 +235,21 @@ class PandaBridgeNode:
 
     def _report(self) -> None:
         problems = {}
-        if self._fault:
-            problems['robot'] = self._fault
+        if fault := self._fault or (STANDSTILL if self._stands_still else ''):
+            problems['robot'] = fault
         elif not self._enabled:
             problems[self._commands.topic_name] = f'disabled: {self._enable_name} to go on'
-        drift = (time.time_ns() - self._stamp_ns()) * 1e-9
-        if abs(drift) > CLOCK_DRIFT:
-            self.node.get_logger().warning(f"stamps set anew: the arm's clock was {drift:.3f} s off this machine's")
-            self._set_clock()
         self._diagnostics.publish(
-            problems, level=DiagnosticStatus.ERROR if self._fault else None, mode=self._state.mode,
+            problems, level=DiagnosticStatus.ERROR if fault else None, mode=self._state.mode,
             enabled=self._enabled)
 
     def close(self) -> None:
-        """End the control."""
-        self._disable()
+        """End the control, and if it does not end, the process at once: taking leave would leave the arm to itself."""
+        try:
+            self._disable()
+        except ArmError as error:
+            print(f'error: {error}', file=sys.stderr, flush=True)
+            os._exit(2)
         self._report()
         self._joints.flush()
         self._background.close()

@@ -16,7 +16,8 @@
 
 Behind them is the Panda of shared_control's world, which steps whenever it is looked at, up to the present.
 ``hostname`` "nobody" does not answer; "far" has an elbow that stands half a radian off the reference; "slow" takes two
-seconds until it is under control.
+seconds until it is under control. Once it is under control, "unstoppable" stays so, the time of "frozen" stands still,
+and "lost" does not answer any more.
 """
 
 import time
@@ -51,6 +52,8 @@ class Panda:
         self._began = time.monotonic()
         self._ticks = 0
         self._controller = None
+        self._hostname = hostname
+        self._was_started = False
 
     def _catch_up(self):
         while self._ticks < (time.monotonic() - self._began) * 1000:
@@ -60,7 +63,10 @@ class Panda:
     def get_state(self):
         if self._controller is None:
             time.sleep(0.001)  # until the next state comes
-        self._catch_up()
+        if self._was_started and self._hostname == 'lost':
+            raise RuntimeError('libfranka: UDP receive: Timeout')
+        if not (self._was_started and self._hostname == 'frozen'):
+            self._catch_up()
         q, qd = self._robot.world.joint_state()
         return SimpleNamespace(
             time=SimpleNamespace(to_msec=lambda: self._ticks), q=list(q), dq=list(qd),
@@ -70,10 +76,13 @@ class Panda:
         controller.torque = np.zeros(7)
         time.sleep(self._start_seconds)
         self._controller = controller
+        self._was_started = True
         self._robot.tick(controller.torque)  # the control begins with zero, whatever is set next
         self._ticks += 1
 
     def stop_controller(self):
+        if self._hostname == 'unstoppable':
+            raise RuntimeError('libfranka: stop failed')
         self._controller = None
         self._robot.stop()
 
