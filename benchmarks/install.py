@@ -113,7 +113,7 @@ def answers(python: Path) -> int:
     from std_srvs.srv import SetBool
     with free_domain() as domain, tempfile.TemporaryDirectory() as logs, running_nodes(Path(logs)) as start:
         start('mock_panda_node')
-        start('torque_ctrl_node', python=str(python), prediction_horizon=0.004)
+        start('torque_ctrl_node', python=str(python), robot_compensates_gravity=True, prediction_horizon=0.004)
         observer = Observer(domain)
         try:
             torques = observer.listen(contract.EFFORT_COMMANDS)

@@ -274,7 +274,8 @@ class PandaSimNode:
             problems, ticks=self._tick, tick_p50_ms=f'{self._times.quantile_ms(0.5):.3f}',
             tick_p99_ms=f'{self._times.quantile_ms(0.99):.3f}', late_ticks=self._times.late,
             running_seconds=f'{self._running_seconds:.3f}', simulated_seconds=f'{simulated:.3f}',
-            missed_commands=self._missed, paused=self._paused, at_rest=self._rests, task=self._task_name)
+            missed_commands=self._missed, paused=self._paused, at_rest=self._rests, compensates_gravity=False,
+            task=self._task_name)
 
     def close(self) -> None:
         """Publish the figures of the whole run and free the physics server."""

@@ -110,7 +110,7 @@ EMERGENCY_STOP = Topic(
 DIAGNOSTICS = Topic(
     'diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', 10, 'all nodes', '', '1 Hz',
     'period p50 and p99, overruns, what is silent; of simulator and controller the task; of a simulator, at once, '
-    'whether it is `paused`')
+    'whether it is `paused`; of a robot, whether it `compensates_gravity`')
 CLOCK = Topic('/clock', 'rosgraph_msgs/msg/Clock', 100, 'simulator', 'all', '100 Hz', 'simulation time')
 """Absolute: rclpy expects it there, whatever the namespace."""
 EPISODE = Topic(

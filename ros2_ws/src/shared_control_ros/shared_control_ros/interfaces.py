@@ -57,7 +57,8 @@ INTERFACES = {
     'torque_ctrl_node': Interface(
         publishes=(contract.EFFORT_COMMANDS, contract.APPLIED_WRENCH, contract.HUMAN_APPLIED, contract.AGENT_APPLIED,
                    contract.DIAGNOSTICS),
-        subscribes=(contract.JOINT_STATES, contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.EMERGENCY_STOP),
+        subscribes=(contract.JOINT_STATES, contract.HUMAN_WRENCH, contract.AGENT_WRENCH, contract.EMERGENCY_STOP,
+                    contract.DIAGNOSTICS),
         serves=CONTROLLER),
     'teleop_key_node': Interface(
         publishes=(contract.HUMAN_WRENCH, contract.KEYS, contract.HUMAN_VERDICT, contract.DIAGNOSTICS),

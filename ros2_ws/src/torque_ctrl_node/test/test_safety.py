@@ -21,6 +21,7 @@ import time
 
 import numpy as np
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from sensor_msgs.msg import JointState
 from shared_control.robot.spec_file import panda
 from shared_control_ros import contract
@@ -124,6 +125,28 @@ def test_does_not_enable_itself_after_it_was_disabled(start_node, robot):
     robot.run_until_refused(start(start_node))
     assert robot.ask(contract.ENABLE_SERVICE, SetBool, data=False).success
     assert robot.run(off=0.0) == []
+
+
+@pytest.mark.parametrize('compensates', [True, False])
+def test_no_torques_for_a_robot_that_is_another_as_to_gravity(start_node, observer, robot, compensates):
+    """The arm would rise or sink by its weight."""
+    node = start_node('torque_ctrl_node', enabled=True, robot_compensates_gravity=not compensates)
+    node.wait_for_log('ready')
+    robot.run_until_answered()
+    reports = observer.publisher(contract.DIAGNOSTICS)
+
+    def say(compensates):
+        values = [KeyValue(key='compensates_gravity', value=str(compensates))]
+        reports.publish(DiagnosticArray(status=[DiagnosticStatus(values=values)]))
+        robot.run(50)
+
+    fault = f'gravity itself: start the controller with robot_compensates_gravity:={str(compensates).lower()}'
+    node.wait_for_log(fault, beside=lambda: say(compensates))
+    assert robot.run() == []
+    refused = robot.ask(contract.ENABLE_SERVICE, SetBool, data=True)
+    assert not refused.success and fault in refused.message
+    observer.spin(lambda: say(not compensates) or robot.ask(contract.ENABLE_SERVICE, SetBool, data=True).success)
+    robot.run_until_answered()
 
 
 def start_as_on_a_robot(start_node, robot):

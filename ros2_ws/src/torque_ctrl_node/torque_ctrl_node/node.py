@@ -110,7 +110,7 @@ class TorqueCtrlNode:
         self._command_publisher = node.create_publisher(
             contract.EFFORT_COMMANDS.msg_type, contract.EFFORT_COMMANDS.name, contract.EFFORT_COMMANDS.qos)
         self._applied = AppliedMoments(node, task.axes, robot.base_frame)
-        self._safety = Safety(node, robot, enabled, self._report)
+        self._safety = Safety(node, robot, enabled, self._report, compensates)
 
         if self._safety.is_stopped or not enabled:
             node.get_logger().warning(self._safety.problem)

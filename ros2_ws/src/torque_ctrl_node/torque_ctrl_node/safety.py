@@ -27,6 +27,7 @@ from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
 from std_srvs.srv import SetBool, Trigger
 
+from .robot_gravity import RobotGravity
 from .stop_record import StopRecord
 
 STOPPING_TICKS = round(0.5 / CONTROL_PERIOD)
@@ -48,12 +49,15 @@ class Safety:
         spec: the robot.
         enables_itself: as soon as nothing speaks against it, without being asked: for simulations.
         on_change: called after each change.
+        compensates_gravity: the controller was told that the robot adds gravity itself.
     """
 
-    def __init__(self, node: Node, spec: RobotSpec, enables_itself: bool, on_change: Callable[[], None]):
+    def __init__(self, node: Node, spec: RobotSpec, enables_itself: bool, on_change: Callable[[], None],
+                 compensates_gravity: bool):
         self._node = node
         self._spec = spec
         self._on_change = on_change
+        self._gravity = RobotGravity(node, compensates_gravity)
         self._record = StopRecord(node.context.get_domain_id(), node.get_namespace())
         self.enabled = False
         """Whether torques are computed and sent."""
@@ -114,7 +118,15 @@ class Safety:
             self.stopping_ticks = 0  # what has had no torques for so long is at rest
 
     def hear(self) -> None:
-        """Look whether somebody has published an emergency stop; false means nothing: only the service ends one."""
+        """Look whether somebody has published an emergency stop, or the robot how it is to be commanded.
+
+        A false emergency stop means nothing: only the service ends one.
+        """
+        self._gravity.update()
+        if self.enabled and self._gravity.obstacle:
+            self.end_torques()
+            self.stopping_ticks = 0  # what would bring the arm to rest holds its weight wrongly, too
+            self._changed(f'disabled: {self._gravity.obstacle}')
         for messages in self._stop_messages:
             while (message := messages.take()) is not None:
                 if message.data and not self.is_stopped:
@@ -152,7 +164,7 @@ class Safety:
             return 'the controller is leaving'
         if time.monotonic() - self._q_seen > JOINTS_SECONDS:
             return f'no usable joint states on {self._node.resolve_topic_name(contract.JOINT_STATES.name)}'
-        return far_from_home(self._spec, self._q)
+        return self._gravity.obstacle or far_from_home(self._spec, self._q)
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data and not self.enabled:

@@ -231,7 +231,7 @@ class MockPandaNode:
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if mode is Mode.REFLEX else None, mode=mode.value,
             reflexes=self._reflexes, dropped_commands=self._dropped, limited_ticks=self._robot.limited_ticks,
-            ticks=self._tick, task=self._task_name)
+            ticks=self._tick, compensates_gravity=True, task=self._task_name)
 
     def close(self) -> None:
         """Publish the figures of the whole run and free the physics server."""

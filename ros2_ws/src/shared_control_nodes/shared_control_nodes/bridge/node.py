@@ -241,7 +241,7 @@ class PandaBridgeNode:
             problems[self._commands.topic_name] = f'disabled: {self._enable_name} to go on'
         self._diagnostics.publish(
             problems, level=DiagnosticStatus.ERROR if fault else None, mode=self._state.mode,
-            enabled=self._enabled)
+            enabled=self._enabled, compensates_gravity=True)
 
     def close(self) -> None:
         """End the control, and if it does not end, the process at once: taking leave would leave the arm to itself."""
