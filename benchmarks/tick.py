@@ -67,10 +67,10 @@ class Stamps:
 
         return stamped
 
-    def of_tick(self, call: Callable[..., Any], argument: int) -> Callable[..., Any]:
-        """``call``, one of whose arguments is the stamp that tells which tick it is."""
+    def of_tick(self, call: Callable[..., Any]) -> Callable[..., Any]:
+        """``call``, whose first argument is the stamp that tells which tick it is."""
         def stamped(*args: Any) -> Any:
-            self._row[0] = args[argument]
+            self._row[0] = args[0]
             return call(*args)
 
         return stamped
@@ -81,7 +81,7 @@ def simulator(stamps: Stamps) -> Any:
     from panda_sim_node.node import PandaSimNode
     node = PandaSimNode()
     states, commands, world = node._states, node._commands, node._world
-    states.publish = stamps.after('published', stamps.before('begins', stamps.of_tick(states.publish, 1)))
+    states.publish = stamps.after('published', stamps.before('begins', stamps.of_tick(states.publish)))
     commands.wait_ready = stamps.after('woken', commands.wait_ready)
     commands.take = stamps.after('taken', commands.take)
     commands.read = stamps.after('read', commands.read)
@@ -98,7 +98,7 @@ def controller(stamps: Stamps) -> Any:
     states.take = stamps.after('taken', states.take)
     reader.read = stamps.after('read', reader.read)
     node._controller.torque = stamps.after('computed', stamps.before('computes', node._controller.torque))
-    node._command.answer = stamps.of_tick(node._command.answer, 0)
+    node._command.answer = stamps.of_tick(node._command.answer)
     node._command_publisher.publish = stamps.after('answered', node._command_publisher.publish)
     return node
 
