@@ -26,6 +26,7 @@ from rclpy.node import Node
 from shared_control.processes import leave_with_the_parent
 from shared_control_ros import contract
 from shared_control_ros.processes import node_module
+from shared_control_ros.reports import values_of
 from shared_control_testing.nodes import free_domain
 
 ROUNDS = 7
@@ -90,7 +91,7 @@ def last_report(domain: int, seconds: float, readers: int = 1) -> dict[str, Any]
 
     def on_report(message: DiagnosticArray) -> None:
         if message.status[0].name == '/panda_sim_node':
-            values.update({value.key: value.value for value in message.status[0].values})
+            values.update(values_of(message.status[0]))
 
     node.create_subscription(DiagnosticArray, contract.DIAGNOSTICS.name, on_report, contract.DIAGNOSTICS.qos)
     deadline = time.monotonic() + 180.0

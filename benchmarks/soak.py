@@ -18,6 +18,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from shared_control.command_line import script_parser
 from shared_control_ros import contract
+from shared_control_ros.reports import values_of
 from shared_control_testing.faults.plan import NODES
 from shared_control_testing.live_session import Session
 from shared_control_testing.nodes import Observer, free_domain
@@ -156,7 +157,7 @@ def _ticks(diagnostics: list[DiagnosticArray]) -> dict[str, float] | None:
     """The simulator's newest report of its ticks, as figures of a sample."""
     for message in reversed(diagnostics):
         for status in message.status:
-            values = {pair.key: pair.value for pair in status.values}
+            values = values_of(status)
             if status.name.endswith('panda_sim_node') and 'tick_p50_ms' in values:
                 return {'tick_p50_ms': float(values['tick_p50_ms']), 'tick_p99_ms': float(values['tick_p99_ms']),
                         'late_ticks_percent': 100.0 * int(values['late_ticks']) / max(int(values['ticks']), 1)}

@@ -14,4 +14,17 @@
 
 """Fixtures of this folder."""
 
+import pytest
+from rclpy.node import Node
+from shared_control_ros.fast_loop import Background
 from shared_control_testing.nodes import *  # noqa: F403
+
+
+@pytest.fixture
+def agent(observer):
+    """A node in the place of the agent's, and what serves its requests; ended with the test."""
+    node = Node('agent', context=observer.context)
+    background = Background(node)
+    yield node, background
+    background.close()
+    node.destroy_node()

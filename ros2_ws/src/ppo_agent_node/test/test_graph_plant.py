@@ -89,14 +89,11 @@ def robot(observer):
 
 
 @pytest.fixture
-def plant(observer):
-    node = Node('agent', context=observer.context)
-    background = Background(node)
+def plant(agent):
+    node, background = agent
     plant = GraphPlant(node, BALANCE.axes, background, lambda: None)
     yield plant
     plant.close()
-    background.close()
-    node.destroy_node()
 
 
 def test_an_episode_begins_with_the_joints_of_a_ball_that_was_on_its_way(robot, plant):

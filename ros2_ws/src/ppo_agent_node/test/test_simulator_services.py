@@ -25,7 +25,6 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from shared_control.plant import PlantInterrupted
 from shared_control_ros import contract
-from shared_control_ros.fast_loop import Background
 from std_srvs.srv import SetBool, Trigger
 
 
@@ -71,12 +70,8 @@ def services(observer):
 
 
 @pytest.fixture
-def simulator(services, observer):
-    node = Node('agent', context=observer.context)
-    background = Background(node)
-    yield Simulator(node, background)
-    background.close()
-    node.destroy_node()
+def simulator(services, agent):
+    return Simulator(*agent)
 
 
 class TestAnswers:

@@ -21,6 +21,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
+from shared_control_ros.reports import values_of, waits_to_be_enabled
 from shared_control_ros.watchdog import STANDSTILL
 
 from .node_process import NodeProcess
@@ -260,7 +261,7 @@ class _Graph:
         for status in message.status:
             name = status.name.rpartition('/')[2]
             self.reported[name], self._newest[name] = now, status
-            values = {value.key: value.value for value in status.values}
+            values = values_of(status)
             if 'ticks' in values:
                 was_paused, self._paused = self._paused, values.get('paused') == 'True'
                 if values['ticks'] != self._ticks or (was_paused and not self._paused):
@@ -273,9 +274,7 @@ class _Graph:
             if now - self.reported.get(name, -math.inf) > STANDSTILL:
                 continue
             status = self._newest[name]
-            values = {value.key: value.value for value in status.values}
-            is_disabled = values.get('enabled') == 'False' and values.get('enables_itself') != 'True'
-            if status.level == DiagnosticStatus.ERROR or is_disabled:
+            if status.level == DiagnosticStatus.ERROR or waits_to_be_enabled(values_of(status)):
                 return f'{name}: {status.message}'
         return ''
 

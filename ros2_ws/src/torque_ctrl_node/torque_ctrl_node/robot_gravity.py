@@ -17,6 +17,7 @@
 from rclpy.node import Node
 from shared_control_ros import contract
 from shared_control_ros.fast_loop import Polled
+from shared_control_ros.reports import values_of
 
 _KEY = 'compensates_gravity'
 
@@ -41,9 +42,9 @@ class RobotGravity:
         """Take what was reported."""
         while (message := self._reports.take()) is not None:
             for status in message.status:
-                for value in status.values:
-                    if value.key == _KEY:
-                        self._compare(value.value == 'True')
+                values = values_of(status)
+                if _KEY in values:
+                    self._compare(values[_KEY] == 'True')
 
     def _compare(self, compensates: bool) -> None:
         self.obstacle = '' if compensates == self._told else (

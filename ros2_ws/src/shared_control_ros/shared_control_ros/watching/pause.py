@@ -18,6 +18,7 @@ from rclpy.node import Node
 
 from .. import contract
 from ..fast_loop import Polled
+from ..reports import values_of, waits_to_be_enabled
 
 
 class Pause:
@@ -39,8 +40,8 @@ class Pause:
         """Take what was reported."""
         while (message := self._reports.take()) is not None:
             for status in message.status:
-                told = {value.key: value.value == 'True' for value in status.values}
-                if 'paused' in told:
-                    self.is_on, self.is_reported = told['paused'], True
-                if 'emergency_stop' in told:
-                    self.controller_is_off = not (told.get('enabled') or told.get('enables_itself'))
+                values = values_of(status)
+                if 'paused' in values:
+                    self.is_on, self.is_reported = values['paused'] == 'True', True
+                if 'emergency_stop' in values:  # the bridge to a robot is enabled, too
+                    self.controller_is_off = waits_to_be_enabled(values)
